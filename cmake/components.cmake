@@ -177,7 +177,7 @@ tactus_component(transport
         transport/content_hash.hpp
         transport/chunk_loader.hpp
         transport/dds/dds_client.hpp
-        transport/dds/dds_host.hpp
+        transport/dds/dds_server.hpp
         transport/dds/object_publisher.hpp
         transport/dds/scene_reader.hpp
         transport/dds/telemetry.hpp

@@ -64,7 +64,7 @@ tactus_module(rt_core/frame rt_core)
 # What every module above rt_core may use: refusals, texts and their numbers, files that appear
 # whole, the program's log, exit codes. It knows rt_core/base alone.
 tactus_module(transport/base rt_core/base)
-# The chunk loader between cache and link, and what hosts and controllers say of models, objects,
+# The chunk loader between cache and link, and what servers and controllers say of models, objects,
 # materials and runs.
 tactus_module(transport ${stage_layer} rt_core/cache transport/base)
 # What a frame and the chunk loader beside it take together.
@@ -111,7 +111,7 @@ tactus_module(platform/loop platform/machine platform/devices platform/recording
 # fixtures that are made of it.
 tactus_module(platform/choices platform/loop platform/machine platform/devices platform/recording
     transport rt_core)
-# The objects of a run: a scene of a file or a host, who moves them, and how they feel.
+# The objects of a run: a scene of a file or a server, who moves them, and how they feel.
 tactus_module(platform/scene platform/choices platform/loop platform/machine platform/devices
     transport rt_core)
 # One run: pools, frame, chunk loader, devices, threads, recorder and topics, from the choices to

@@ -18,10 +18,9 @@ namespace tactus
 namespace
 {
 
-/// Pause between two polls.
+/// Pause between two rounds over the fetches.
 constexpr auto kPause = std::chrono::milliseconds(1);
-/// Silence after which missing parts are requested again; longer than any round trip that is usable
-/// for haptics.
+/// Time without a new part after which missing parts are requested again.
 constexpr auto kAgain = std::chrono::milliseconds(100);
 
 } // namespace
@@ -76,7 +75,7 @@ BaseFetch::State BaseFetch::check()
             return state_ = State::refused;
         }
         parts_ = PartIntake(ContentKind::base, header_.fields().base_bytes);
-        session_ = 0; // 0 requests the parts again at once.
+        session_ = 0; // Requests all parts at the next step.
         return state_;
     }
     model_.base = std::move(parts_.bytes());
@@ -100,9 +99,9 @@ std::optional<Refusal> bring_bases(std::span<ServedModel> models, std::chrono::m
             const auto state = fetch->step();
             if (state == BaseFetch::State::refused)
             {
-                return Refusal{fmt::format("model '{}' has a base mesh of another hash than its "
-                                           "header names",
-                                           fetch->model().name)};
+                return Refusal{fmt::format(
+                    "model '{}' has a base mesh that does not match the hash in its header",
+                    fetch->model().name)};
             }
             fetch = state == BaseFetch::State::done ? fetches.erase(fetch) : std::next(fetch);
         }
@@ -114,8 +113,9 @@ std::optional<Refusal> bring_bases(std::span<ServedModel> models, std::chrono::m
         if (waited >= timeout || (go_on && !go_on()))
         {
             const std::chrono::duration<double> seconds = waited;
-            return Refusal{fmt::format("the base mesh of model '{}' did not come (waited {:.3g} s)",
-                                       fetches.front().model().name, seconds.count())};
+            return Refusal{
+                fmt::format("the base mesh of model '{}' did not arrive (waited {:.3g} s)",
+                            fetches.front().model().name, seconds.count())};
         }
         std::this_thread::sleep_for(kPause);
     }

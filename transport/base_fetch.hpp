@@ -12,28 +12,28 @@
 #include <optional>
 #include <span>
 
-// One thread, that of the models' links.
+// One thread, the one that uses the links of the models.
 namespace tactus
 {
 
-/// Fetches a model's base mesh over its link, part by part. If a server leaves midway, is silent or
-/// sends wrong bytes, the fetch goes on with another server of the model.
+/// Fetches the base mesh of a model over its link, part by part. If a server leaves, is silent or
+/// sends wrong bytes, the fetch continues with another server of the model.
 class BaseFetch final : private PieceSink
 {
 public:
     enum class State : std::uint8_t
     {
         under_way,
-        done,    ///< `base` of the model is complete and has the hash that its header names.
-        refused, ///< Final: the bytes have another hash, and no other server has the model.
+        done,    ///< The model's `base` is complete and has the hash stored in its header.
+        refused, ///< Final: the bytes have a wrong hash, and no other server has the model.
     };
 
-    /// `model` must outlive the fetch and have a header as ServedModel states. The fetch of a model
-    /// that already has a base mesh is done.
+    /// `model` must outlive the fetch, and its header must be verified (ServedModel). If `model`
+    /// has a base mesh, the fetch is done.
     explicit BaseFetch(ServedModel& model);
 
     /// Takes the parts that have arrived and requests the missing ones, again after a timeout.
-    /// Never waits, except for a file's disk.
+    /// Waits for nothing except the disk of a model's file.
     State step();
 
     [[nodiscard]] const ServedModel& model() const noexcept { return model_; }
@@ -48,13 +48,13 @@ private:
     ModelHeader header_;
     PartIntake parts_;
     State state_{State::under_way};
-    std::uint64_t session_{0}; ///< Link session of the last request.
+    std::uint64_t session_{0}; ///< ChunkLink::session() at the last request; 0: request at once.
     Clock::time_point progress_{};
 };
 
-/// Waits until all these models have their base meshes, at most `timeout`, or until `go_on` (called
-/// every few milliseconds) returns false. The refusal names a model that lacks its base mesh;
-/// fetched base meshes stay.
+/// Waits until all models have their base meshes, for at most `timeout`, or until `go_on`, called
+/// about once a millisecond, returns false. The refusal names a model without base mesh; the meshes
+/// fetched so far are kept.
 [[nodiscard]] std::optional<Refusal> bring_bases(std::span<ServedModel> models,
                                                  std::chrono::milliseconds timeout,
                                                  const std::function<bool()>& go_on = {});

@@ -11,9 +11,9 @@
 namespace tactus
 {
 
-/// Receives the pieces that a link delivers. `bytes` are the piece's coded form, not verified, and
-/// valid only during the call. A base mesh arrives in parts (transport/piece_parts.hpp); the key's
-/// number is that of the part.
+/// Receives the pieces that a link delivers. `bytes` are in coded form, unverified, and valid only
+/// during the call. A base mesh arrives in parts (transport/piece_parts.hpp); `key.number` is the
+/// number of the part.
 class PieceSink
 {
 public:
@@ -26,15 +26,14 @@ protected:
 enum class LinkState : std::uint8_t
 {
     connected,
-    host_gone, ///< No server has this model at present; one may return.
+    server_gone, ///< No server has this model now, but one may return.
 };
 
-/// Source of one model's base mesh, index pages and chunks: a local file, a server on the network,
-/// or a stand-in for one. Used by one thread, the transport thread; no call waits, except for a
-/// file's disk.
+/// Source of one model's base mesh, index pages and chunks: a file, a server, or a stand-in for
+/// tests. One thread, the transport thread; no call waits, except for a file's disk.
 ///
-/// A link may lose, repeat, reorder and damage pieces: the ChunkLoader verifies them and requests
-/// them again.
+/// Pieces may be lost, repeated, reordered or damaged. The user of the link verifies them and
+/// requests them again.
 class ChunkLink
 {
 public:
@@ -45,29 +44,28 @@ public:
     ChunkLink(ChunkLink&&) = delete;
     ChunkLink& operator=(ChunkLink&&) = delete;
 
-    /// Requests pieces that the model has, highest priority first. A newer generation goes before
-    /// requests that still wait.
+    /// Requests pieces of the model, highest priority first. Requests of a newer generation are
+    /// answered before waiting ones of older generations.
     virtual void request(std::span<const ContentKey> keys, std::uint32_t generation) = 0;
 
-    /// Reports that a piece has a wrong hash. Called in receive(), or after it for a complete base
-    /// mesh. True if a further request makes sense: the link now asks another source, or one may
-    /// appear.
+    /// Reports a piece with a wrong hash, during its receive(); for a base mesh, after its last
+    /// part. True if a further request may succeed, with another source or after one appears.
     [[nodiscard]] virtual bool distrust(ContentKey /*key*/) { return false; }
 
-    /// Delivers the pieces that have arrived. Also does the link's own upkeep: call it often (a few
-    /// hundred times a second) even without open requests.
+    /// Delivers the pieces that have arrived and maintains the connection. Call it a few hundred
+    /// times a second, even without open requests.
     virtual void poll(PieceSink& sink) = 0;
 
     [[nodiscard]] virtual LinkState state() const = 0;
 
-    /// Number of connections so far. When it changes, the present server knows none of the earlier
-    /// requests.
+    /// Number of connections so far. After a change, repeat all open requests: the present server
+    /// has not received them.
     [[nodiscard]] virtual std::uint64_t session() const = 0;
 
-    /// Payload bytes received, the link's keys and framing included.
+    /// Bytes of all pieces received, including the link's keys and framing.
     [[nodiscard]] virtual std::uint64_t bytes_received() const = 0;
 
-    /// Requested pieces that are known to be damaged in their storage.
+    /// Number of requested pieces found damaged in storage.
     [[nodiscard]] virtual std::uint64_t damaged() const { return 0; }
 };
 

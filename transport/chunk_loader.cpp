@@ -54,8 +54,8 @@ void ChunkLoader::add(const ModelHeader& header, Linker& linker, ChunkLink& link
 void ChunkLoader::step(std::int64_t now_ns)
 {
     now_ns_ = now_ns;
-    // The count is taken before the freed slots: the haptic thread frees a page before it requests
-    // it again, so each of these requests is processed after the release that preceded it.
+    // The haptic thread frees a page before it requests the page again. The number of requests is
+    // read first, so that the release that preceded each of them has been taken.
     const std::size_t requests = queues_.wanted.size();
     bank_.take_back_freed();
     take_requests(requests);
@@ -119,19 +119,19 @@ void ChunkLoader::forget_oldest_generation()
     remove(open_[oldest]);
 }
 
-/// Handles a repeated request: the cache's timeout has expired.
+/// Handles a request that the haptic thread repeats after its timeout (RequestList).
 void ChunkLoader::request_again(OpenRequest& open)
 {
     Side& side = *open.side;
-    if (side.link.state() == LinkState::host_gone)
+    if (side.link.state() == LinkState::server_gone)
     {
-        open.clock.wait_for_host(now_ns_);
+        open.clock.wait_for_server(now_ns_);
     }
     else if (open.clock.request(now_ns_, forgotten_ns_))
     {
         ++side.counters.overdue;
         ++side.overdue;
-        tell(side, open.key, "doesn't come; the surface there stays coarse");
+        tell(side, open.key, "has not arrived; the surface there stays coarse");
     }
     ask_again(open);
 }
@@ -143,9 +143,9 @@ void ChunkLoader::ask_again(OpenRequest& open)
     open.is_asked = false;
 }
 
-/// Sends the requests not yet sent, and all again if another server has the model. The cache owns
-/// the timeout (RequestList). The link handles loss first; requests expire for causes that it
-/// cannot see: pieces that were damaged or found no slot.
+/// Sends the requests not yet sent to the model's link; all open ones if the server changed. The
+/// link repeats lost requests. The haptic thread repeats those for pieces that were damaged or
+/// found no free slot, which the link does not see.
 void ChunkLoader::ask(Side& side)
 {
     const std::span<OpenRequest> open = open_.first(open_count_);
@@ -157,12 +157,12 @@ void ChunkLoader::ask(Side& side)
         {
             if (request.side == &side)
             {
-                request.clock.wait_for_host(now_ns_);
+                request.clock.wait_for_server(now_ns_);
                 ask_again(request);
             }
         }
     }
-    if (side.unasked == 0 || side.link.state() == LinkState::host_gone)
+    if (side.unasked == 0 || side.link.state() == LinkState::server_gone)
     {
         return;
     }
@@ -237,7 +237,8 @@ void ChunkLoader::bring_base(Side& side)
     else if (now_ns_ - side.base_progress_ns > forgotten_ns_)
     {
         ++side.counters.overdue;
-        tell(side, {ContentKind::base, 0}, "doesn't come; its room is for others until then");
+        tell(side, {ContentKind::base, 0},
+             "has not arrived; other models use its memory until then");
         give_cells_back(side);
     }
     else if (!side.is_base_asked && side.link.state() == LinkState::connected)
@@ -249,8 +250,9 @@ void ChunkLoader::bring_base(Side& side)
     }
 }
 
-/// Adopts a complete base mesh; waits while pages linked to the previous one are resident. A
-/// refused mesh gives its cells back: a server that repeats it would occupy them permanently.
+/// Adopts a complete base mesh, as soon as no page linked to the previous mesh is resident. A
+/// refused mesh returns its cells; otherwise a server that repeats it would occupy them
+/// permanently.
 void ChunkLoader::adopt_base(Side& side)
 {
     if (side.linker.pages_here() > 0)
@@ -266,8 +268,7 @@ void ChunkLoader::adopt_base(Side& side)
     if (!parsed)
     {
         refuse(side, is_true ? side.counters.refused_content : side.counters.refused_hash, key,
-               is_true ? refusal_text(parsed.error())
-                       : "does not have the hash that the header names");
+               is_true ? refusal_text(parsed.error()) : "does not match its hash in the header");
         if (!is_true)
         {
             static_cast<void>(side.link.distrust(key));
@@ -286,7 +287,7 @@ void ChunkLoader::adopt_base(Side& side)
     side.base = {};
 }
 
-/// Gives the cells back, since other models may need them.
+/// Returns the cells to the haptic thread, since other models may need them.
 void ChunkLoader::give_cells_back(Side& side)
 {
     bank_.expect_news_of(side.linker.owner());
@@ -310,8 +311,7 @@ void ChunkLoader::adopt_index_page(Side& side, IndexPageId page, std::span<const
     const ContentKey key{ContentKind::index_page, page.value};
     if (content_hash(bytes) != side.header.index_entry(page).hash)
     {
-        refuse(side, side.counters.refused_hash, key,
-               "does not have the hash that the header names");
+        refuse(side, side.counters.refused_hash, key, "does not match its hash in the header");
         static_cast<void>(side.link.distrust(key));
         return;
     }
@@ -327,7 +327,7 @@ void ChunkLoader::adopt_index_page(Side& side, IndexPageId page, std::span<const
         !done)
     {
         refuse(side, side.counters.refused_content, key, refusal_text(done.error()));
-        close_request(side, key); // The server has no better one.
+        close_request(side, key); // The server has no other version.
         return;
     }
     bank_.take_index_page(side.linker.owner(), page);
@@ -348,8 +348,7 @@ void ChunkLoader::adopt_chunk(Side& side, ChunkId chunk, std::span<const std::by
     const ChunkEntry& entry = bank_.entries(index_slot)[chunk.value % kChunksPerIndexPage];
     if (bytes.size() != entry.coded_bytes || content_hash(bytes) != entry.hash)
     {
-        refuse(side, side.counters.refused_hash, key,
-               "does not have the hash that its index page names");
+        refuse(side, side.counters.refused_hash, key, "does not match its hash in the index page");
         static_cast<void>(side.link.distrust(key));
         return;
     }
@@ -385,12 +384,12 @@ void ChunkLoader::hand_over(Side& side, ContentKey key, std::uint32_t slot, std:
     if (open->clock.is_overdue())
     {
         ++side.counters.overdue_came;
-        tell(side, key,
-             fmt::format("has come after all, after {:.1f} s",
-                         1e-9 * static_cast<double>(waited_ns)));
+        tell(
+            side, key,
+            fmt::format("has arrived late, after {:.1f} s", 1e-9 * static_cast<double>(waited_ns)));
     }
     close_request(side, key);
-    // The queue has room for every slot that the model may have: a slot is in at most one queue.
+    // Every arrival finds room: `arrived` holds as many arrivals as there are slots.
     const bool pushed =
         queues_.arrived.try_push({key, slot, bank_.freed_taken(), linked, QueueEventKind::arrival,
                                   static_cast<std::uint8_t>(side.linker.owner())});
@@ -398,8 +397,7 @@ void ChunkLoader::hand_over(Side& side, ContentKey key, std::uint32_t slot, std:
     ++side.counters.delivered;
 }
 
-/// Sends link updates after the arrivals that they depend on, so the queue has the order of
-/// linking.
+/// Pushes link updates after the arrivals, so that a record is reported after those it depends on.
 void ChunkLoader::push_link_updates(Side& side)
 {
     Linker::Update update;

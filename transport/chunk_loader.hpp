@@ -30,21 +30,25 @@ namespace tactus
 struct ChunkLoaderCounters
 {
     std::uint64_t pieces{0};      ///< Pieces received, accepted or not.
-    std::uint64_t coded_bytes{0}; ///< Their bytes, without the link's framing.
+    std::uint64_t coded_bytes{0}; ///< Bytes of the received pieces, without the link's framing.
     std::uint64_t delivered{0};   ///< Pieces passed to the haptic thread.
     std::uint64_t requests{0};    ///< Requests taken from the haptic thread.
-    /// Requests repeated: no answer, or another server has the model.
+    /// Requests sent to the link again, after the haptic thread's timeout or a change of server.
     std::uint64_t asked_again{0};
 
-    std::uint64_t refused_hash{0}; ///< Pieces that are damaged, forged, or belong to another key.
-    /// Pieces with the right hash that parse refuses: a faulty model.
+    /// Pieces refused for a wrong hash: damaged, forged, or sent under another key.
+    std::uint64_t refused_hash{0};
+    /// Pieces with the right hash and a content that cannot be parsed: a fault of the model.
     std::uint64_t refused_content{0};
-    std::uint64_t dropped_unasked{0}; ///< Duplicates, late pieces and pieces without a request.
-    /// Pieces for which no slot was free: the haptic thread has all.
+    /// Pieces without an open request, for example duplicates and late ones.
+    std::uint64_t dropped_unasked{0};
+    /// Pieces dropped because no slot was free: the haptic thread has all slots.
     std::uint64_t dropped_no_slot{0};
-    std::uint64_t dropped_no_index{0}; ///< Chunks whose index page is not resident to verify them.
-    std::uint64_t forgotten{0};        ///< Requests given up because too many were open.
-    std::uint64_t overdue{0};      ///< Requests that waited for more than a second (RequestClock).
+    /// Chunks dropped because their index page, which has their hash, is not resident.
+    std::uint64_t dropped_no_index{0};
+    std::uint64_t forgotten{0}; ///< Requests dropped because `open_requests` were open.
+    /// Requests unanswered for a second with a server present (RequestClock), and base meshes.
+    std::uint64_t overdue{0};
     std::uint64_t overdue_came{0}; ///< Overdue pieces that arrived in the end.
 
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_hash + refused_content; }
@@ -54,38 +58,38 @@ struct ChunkLoaderOptions
 {
     /// Maximum number of open requests, 64 B each; above 0 (asserted).
     std::uint32_t open_requests{SlotQueues::kOpenRequests};
-    /// Longest pause between two requests for one piece that counts as continued demand. The haptic
-    /// thread repeats a request within kRequestTimeoutFrames, or twice that.
+    /// Time after its last request at which a piece is no longer wanted, in ns. The haptic thread
+    /// repeats a request after kRequestTimeoutFrames, or twice that. Also the time without a part
+    /// after which the fetch of a base mesh ends.
     std::int64_t forgotten_ns{1'000'000'000};
 };
 
-/// The transport thread's work: takes requests from the haptic thread, asks each model's link,
-/// verifies the pieces that arrive, parses each into a free slot, links it and passes the slot on.
-/// Has no thread of its own: call step() on one thread.
+/// Work of the transport thread: takes requests from the haptic thread and sends them to each
+/// model's link; verifies arriving pieces, parses each into a free slot, links its records and
+/// hands the slot over. Has no thread of its own: call step() on one thread.
 ///
-/// Trust: an index page is checked against its hash in the header, a chunk against its hash in its
-/// index page, so only data that the header's author wrote reaches a slot. A refused piece changes
-/// nothing but counters; its slot stays free.
+/// Trust: the hash of an index page is in the header, and that of a chunk in its index page. A slot
+/// thus holds only data by the header's author. A refused piece changes nothing but counters; its
+/// slot stays free.
 ///
-/// A later page may bring what a record of an earlier page needed. The haptic thread is then sent
-/// the linked records of that page, in their latest state, once the queue has room.
+/// A record may depend on a record of a page that arrives later. Once that page links it, the
+/// haptic thread is sent all linked records of the earlier page, as soon as the queue has room.
 ///
 /// A piece that does not arrive within a second is logged and counted, and so is its later arrival.
 ///
-/// A streamed model's base mesh comes in parts. As a whole it is checked against the hash in the
-/// header, parsed into the cells that the request named, and passed on; the model's pages follow
-/// it. The base mesh is given back only after everything linked to it. If no part arrives for a
-/// second, because the server is gone or silent, the cells are given back; the parts are kept for
-/// the next request, which may reach another server. If the base mesh is refused, the cells are
-/// given back at once, and the next request fetches it from the beginning.
+/// The base mesh of a streamed model arrives in parts. The whole is checked against the hash in the
+/// header and parsed into the cells (SlotQueues) that the request lent. It is handed over before
+/// any page of the model. The haptic thread frees it after all those pages. If no part arrives for
+/// `forgotten_ns`, the cells are returned; the parts are kept for the next request, which may reach
+/// another server. If the base mesh is refused, its cells are returned and its parts are dropped.
 ///
-/// Nothing is allocated after the last add(), except for base meshes in transit (and by links and
-/// log).
+/// Nothing is allocated after the last add(), except for base meshes in transit, by links and by
+/// the log.
 class ChunkLoader
 {
 public:
-    /// All slots of all models belong to the ChunkLoader at first. Slots and queues must outlive
-    /// it.
+    /// Takes all slots, of all models, as free. Their memory and `queues` must outlive the
+    /// ChunkLoader.
     ChunkLoader(Arena& arena, const PageSlots& slots, SlotQueues& queues, Log log,
                 const ChunkLoaderOptions& options = {});
 
@@ -94,19 +98,19 @@ public:
     required_bytes(std::size_t pages, std::size_t index_pages,
                    const ChunkLoaderOptions& options = {}) noexcept;
 
-    /// Adds one model, the linker's owner; models are added in the order of their numbers, from 0.
-    /// All arguments must outlive the ChunkLoader. `name` precedes log lines. A linker without a
-    /// base mesh belongs to a streamed model: the mesh is fetched on request.
+    /// Adds the model numbered linker.owner(), which must equal model_count() (asserted). All
+    /// arguments must outlive the ChunkLoader. `name` begins the model's log lines. A linker
+    /// without a base mesh belongs to a streamed model: its mesh is fetched on request.
     void add(const ModelHeader& header, Linker& linker, ChunkLink& link, std::string name);
 
-    /// Runs one round: freed slots, requests, repeats, arrivals, link updates. `now_ns` is
-    /// monotonic, always of the same clock. The cost grows with the arrivals; a link to a file
-    /// waits for its disk.
+    /// Runs one round: takes freed slots and requests, sends requests to the links, takes arrivals
+    /// and pushes link updates. `now_ns` is from one monotonic clock. The cost grows with the
+    /// arrivals; a link to a file waits for its disk.
     void step(std::int64_t now_ns);
 
-    /// Sends every piece of the model to `copies` too, in its coded form, right before it is passed
-    /// on; null ends that. `copies` must outlive the ChunkLoader. The model must exist, here and
-    /// below.
+    /// Passes each verified piece of the model, in coded form, to `copies` too, right before the
+    /// haptic thread gets it; null ends that. `copies` must outlive the ChunkLoader. `model` must
+    /// be below model_count(), also in the functions below.
     void copy_pieces_to(PieceSink* copies, std::uint32_t model = 0) noexcept
     {
         sides_[model]->copies = copies;
@@ -120,15 +124,15 @@ public:
     {
         return sides_[model]->counters;
     }
-    /// Times from the request for a piece until it was passed on.
+    /// Times from a request for a piece until the piece was handed to the haptic thread.
     [[nodiscard]] const WaitingTimes& waiting_times(std::uint32_t model = 0) const noexcept
     {
         return sides_[model]->waiting_times;
     }
-    /// True while an open request of the model has waited for more than a second.
+    /// True if a piece of the model is overdue (RequestClock) and still wanted.
     [[nodiscard]] bool is_starved(std::uint32_t model = 0) const noexcept;
     [[nodiscard]] std::size_t open_requests() const noexcept { return open_count_; }
-    /// Appends the chunks of the model with open requests, in any order.
+    /// Appends the chunks of the model that have an open request, in any order.
     void add_requested_chunks(std::uint32_t model, std::vector<ChunkId>& chunks) const;
     [[nodiscard]] std::size_t free_pages() const noexcept { return bank_.free_pages(); }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return bank_.free_index_pages(); }
@@ -162,11 +166,11 @@ private:
         std::uint64_t session;
         std::size_t unasked{0}; ///< Open requests not yet sent to the link.
         std::size_t overdue{0}; ///< Open requests that are overdue.
-        /// Cells of a wanted base mesh of a streamed model; `base` has the parts received.
+        /// First cell lent for the base mesh that is being fetched; none if no mesh is wanted.
         std::optional<std::uint32_t> base_cell;
         PartIntake base;
         bool is_base_asked{false};
-        /// Time of the first request or of the last part received.
+        /// Time when the mesh was first requested or when its last part arrived.
         std::int64_t base_progress_ns{0};
         PieceSink* copies{nullptr};
         ChunkLoaderCounters counters;

@@ -15,7 +15,8 @@ namespace tactus
 RootHash root_hash(std::span<const std::byte> bytes) noexcept
 {
     RootHash hash{};
-    // No key: the hash is a name, not a signature. Needs no sodium_init() (no random numbers).
+    // No key: the hash identifies, it does not sign. Works without sodium_init(), which is for
+    // random numbers.
     crypto_generichash_blake2b(hash.data(), hash.size(),
                                reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(),
                                nullptr, 0);

@@ -12,22 +12,22 @@
 #include <string>
 #include <string_view>
 
-// Any thread: functions of their arguments alone. The time of a hash grows with its bytes, so the
-// haptic thread must not call them.
+// Any thread except the haptic one, since the time of a hash grows with its bytes. Results depend
+// on the arguments alone.
 namespace tactus
 {
 
-/// BLAKE2b-256 of a header up to its root hash. A header stores it in full.
+/// BLAKE2b-256 of the header's bytes before its root hash, which the header stores in full.
 using RootHash = std::array<std::uint8_t, kRootHashBytes>;
 
-/// All 256 bits of BLAKE2b-256. Only a header's root hash is stored in full. No allocation.
+/// All 256 bits of BLAKE2b-256 of `bytes`. No allocation.
 [[nodiscard]] RootHash root_hash(std::span<const std::byte> bytes) noexcept;
 
-/// First 128 bits of BLAKE2b-256, the name of a base mesh, index page, chunk or model.
+/// First 128 bits of BLAKE2b-256 of `bytes`; identifies a base mesh, index page, chunk or model.
 [[nodiscard]] ContentHash content_hash(std::span<const std::byte> bytes) noexcept;
 
-/// Hash that names a model: the first half of the root hash in its header. `header` is exactly one
-/// header, of 36 bytes at least (asserted); nothing is verified.
+/// Hash that identifies a model: the first half of the root hash stored in `header`, unverified.
+/// `header` is exactly one header of at least 36 bytes (asserted).
 [[nodiscard]] ContentHash model_hash(std::span<const std::byte> header) noexcept;
 
 /// True if the root hash in a header is the hash of the bytes before it. `header` is exactly one

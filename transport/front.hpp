@@ -16,30 +16,31 @@
 #include <string>
 #include <vector>
 
-// Any thread: values; those with vectors allocate.
+// Any thread: these are values; those with vectors allocate.
 namespace tactus
 {
 
 /// Maximum number of page slots in one refinement state: 256 Ki records, 33 MB of pages.
 inline constexpr std::size_t kMaxStatePages = 4'096;
-/// Object numbers listed by one refinement state, in addition to the objects of awake pairs.
+/// Length of the range of object numbers that a refinement state lists in full (sweep_begin),
+/// besides the objects of awake pairs.
 inline constexpr std::uint32_t kFrontSweep = 16;
 /// Maximum number of objects in one refinement state.
 inline constexpr std::size_t kMaxStateObjects = 2 * kFrontSweep;
-/// Maximum number of requests in one refinement state, over all models: a ChunkLoader has no more
-/// open.
+/// Maximum number of requests in one refinement state, over all models; no fewer than a ChunkLoader
+/// keeps open.
 inline constexpr std::size_t kMaxStateRequests = 256;
-/// Maximum number of regions in one refinement state; a moving sphere has five.
+/// Maximum number of regions in one refinement state. A tool with one sphere has five.
 inline constexpr std::size_t kMaxStateRegions = 64;
 /// Maximum number of bytes of RefinementStateTool::shape.
 inline constexpr std::size_t kMaxShapeBytes = 63;
 
-/// A resident page of records. A record is split if its bit is set. Base mesh and split records
-/// together determine the controller's faces exactly.
+/// A resident page of 64 records and the records that are split. The base mesh and all split
+/// records determine the controller's faces exactly.
 struct RefinementStatePage
 {
     ChunkId chunk{};
-    std::uint64_t refined{0}; ///< Bit n is the chunk's record n.
+    std::uint64_t refined{0}; ///< Bit n is set if record n of the chunk is split.
 
     bool operator==(const RefinementStatePage&) const = default;
 };
@@ -54,11 +55,12 @@ struct RefinementStateModel
     bool operator==(const RefinementStateModel&) const = default;
 };
 
-/// A sphere that a tool may touch, in which its chunks are searched. Model frame, metres.
+/// Sphere in the model's frame that a tool may reach; the chunks needed there are requested.
 struct RefinementStateRegion
 {
-    std::uint32_t model{0};   ///< Index into RefinementState::models.
-    bool is_predicted{false}; ///< True for a predicted place, false for the tool's present one.
+    std::uint32_t model{0}; ///< Index into RefinementState::models.
+    /// False: around the tool's present place; true: around a predicted one.
+    bool is_predicted{false};
     std::array<float, 3> center_m{};
     float radius_m{0.0F};
 
@@ -69,7 +71,7 @@ struct RefinementStateRegion
 struct RefinementStateObject
 {
     /// Epoch of the server that shows the object; 0: placed by the controller.
-    std::uint64_t host_epoch{0};
+    std::uint64_t server_epoch{0};
     std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
     std::uint32_t number{0}; ///< Number of the object on the controller.
     std::uint32_t model{0};  ///< Index into RefinementState::models.
@@ -78,7 +80,7 @@ struct RefinementStateObject
     bool operator==(const RefinementStateObject&) const = default;
 };
 
-/// Wire form of a region; `model` is still the controller's own number.
+/// Region in its wire form. `model` is the controller's model number, not yet an index.
 [[nodiscard]] inline RefinementStateRegion front_region_of(const RankedRegion& region) noexcept
 {
     RefinementStateRegion shown{
@@ -93,15 +95,16 @@ struct RefinementStateObject
 struct RefinementStateTool
 {
     SafetyState state{SafetyState::reset};
-    ForceOff causes{ForceOff::none}; ///< Reasons why the output is below the frame's force.
-    std::string shape;               ///< Shape as hrtc's --tool takes it; printable ASCII.
+    /// Reasons why the output is below the force that the frame computed.
+    ForceOff causes{ForceOff::none};
+    std::string shape; ///< Shape in the form of hrtc's --tool option; printable ASCII.
     double radius_m{0.0};
     bool begins_inside{false}; ///< True if the tool began inside a closed object.
 
     bool operator==(const RefinementStateTool&) const = default;
 };
 
-/// Times of frames, in nanoseconds.
+/// Durations of one stage or of the frame, in nanoseconds.
 struct FrontTimes
 {
     double mean_ns{0.0}; ///< Mean since the last refinement state.
@@ -110,24 +113,26 @@ struct FrontTimes
     bool operator==(const FrontTimes&) const = default;
 };
 
-/// Number of timed spans: the stages in their order, the frame, the frame's processor time.
+/// Number of timed spans: each stage in order, then the whole frame, then the frame's CPU time.
 inline constexpr std::size_t kFrontTimes = kStages + 2;
 
-/// A controller's refinement state, published at most ten times a second. With Telemetry, a viewer
-/// can draw the controller's own faces from a copy of the model.
+/// Refinement state of a controller, published at most ten times a second. A viewer with the model
+/// and the Telemetry draws the controller's own faces from it.
 struct RefinementState
 {
     std::uint64_t frame{0}; ///< Number of frames run.
     std::int64_t time_ns{0};
     std::array<FrontTimes, kFrontTimes> times{};
     Budgets budgets; ///< Budgets of the frame.
-    /// First of the controller's object numbers, up to `sweep_end`, whose objects are all listed.
+    /// Start of the range of object numbers, up to `sweep_end`, in which `objects` lists every
+    /// object.
     std::uint32_t sweep_begin{0};
     std::uint32_t sweep_end{0};
-    std::uint32_t slots_left_out{0};   ///< Page slots beyond kMaxStatePages.
-    std::uint32_t regions_left_out{0}; ///< Lowest-priority regions beyond kMaxStateRegions.
+    std::uint32_t slots_left_out{0}; ///< Number of page slots omitted beyond kMaxStatePages.
+    /// Number of regions omitted beyond kMaxStateRegions, those of lowest priority.
+    std::uint32_t regions_left_out{0};
     std::vector<RefinementStateTool> tools;
-    /// Models with pages or requests, and those of `objects` or `regions`.
+    /// Models with pages or requests, and the models of `objects` and `regions`.
     std::vector<RefinementStateModel> models;
     std::vector<RefinementStateObject> objects;
     std::vector<RefinementStateRegion> regions; ///< Regions, highest priority first.

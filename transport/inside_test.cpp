@@ -45,7 +45,7 @@ bool InsideTest::holds(const Vec3& place_m) const
 }
 
 /// Winding number test: the sum of the solid angles of all faces (Van Oosterom and Strackee 1983)
-/// is 4 pi inside and zero outside, with the opposite sign for a surface of opposite orientation.
+/// is zero outside. Inside it is 4 pi, or -4 pi for faces of the opposite orientation.
 bool InsideTest::is_wound_round(const Vec3& place_m) const
 {
     double half_angles = 0.0;
@@ -60,7 +60,8 @@ bool InsideTest::is_wound_round(const Vec3& place_m) const
         half_angles += std::atan2(a.dot(b.cross(c)),
                                   la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
     }
-    return std::abs(half_angles) > std::numbers::pi; // Half of 2 pi.
+    // Half of 2 pi, which is the sum of the half angles inside.
+    return std::abs(half_angles) > std::numbers::pi;
 }
 
 } // namespace tactus

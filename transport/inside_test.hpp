@@ -13,28 +13,28 @@
 namespace tactus
 {
 
-/// Test whether a tool begins inside a solid. The force has no notion of inside: a surface holds a
-/// tool on the side of its first contact. A tool that begins inside is held there, and pulls back a
-/// hand that leaves. A program therefore tests before a run.
+/// Tests whether a tool begins inside a solid. A surface holds a tool on the side of its first
+/// contact, so a tool that begins inside is held inside and pulls the hand back. A program
+/// therefore tests before a run.
 ///
 /// The test uses the base mesh with a margin of its largest error: a place within the margin of the
 /// surface does not count as inside.
 ///
-/// Any thread, except the haptic one: some microseconds to a millisecond a place.
+/// Any thread except the haptic one; a test takes microseconds to a millisecond.
 class InsideTest
 {
 public:
     /// `header` must parse, and `base` is its coded base mesh. If the model is not closed or `base`
-    /// is empty, no place is inside.
+    /// is empty, holds() is always false.
     InsideTest(const ModelHeader& header, std::span<const std::byte> base);
 
-    /// True if a place, in the model's frame, is inside.
+    /// True if the point, in metres in the model's frame, is inside by more than the margin.
     [[nodiscard]] bool holds(const Vec3& place_m) const;
 
 private:
     [[nodiscard]] bool is_wound_round(const Vec3& place_m) const;
 
-    /// Faces of the base mesh; empty: no place is inside.
+    /// Faces of the base mesh; empty if holds() is always false.
     std::vector<std::array<Vec3, 3>> faces_m_;
     double margin_m_{0.0};
 };

@@ -11,13 +11,13 @@
 namespace tactus
 {
 
-/// Receives one line of text, without a newline. Called on the transport thread, never on the
-/// haptic thread. An empty one is never called: nothing is logged.
+/// Receives one line of text without a newline, on the transport thread. If the function is empty,
+/// nothing is logged.
 using Log = std::function<void(const std::string&)>;
 
-/// Limits the lines per second and reports how many were suppressed: a fault that repeats a
-/// thousand times a second must not flood the terminal or stall its thread. One thread; reads the
-/// clock, and allocates when it writes.
+/// Limits the lines per second and reports the number left out, so that a fault that repeats
+/// quickly neither floods the terminal nor stalls its thread. One thread; reads the clock, and
+/// allocates when a line is written.
 class RateLimitedLog
 {
 public:
@@ -28,7 +28,8 @@ public:
     {
     }
 
-    /// True if one more line may be written now; build the line only then.
+    /// Counts a line and returns true if it may be written now, by write_now(). Build the line only
+    /// then.
     [[nodiscard]] bool try_begin()
     {
         const auto now = std::chrono::steady_clock::now();
@@ -38,7 +39,8 @@ public:
             lines_ = 0;
             if (suppressed_ > 0 && log_)
             {
-                log_(std::to_string(suppressed_) + " more lines like the last ones");
+                log_(std::to_string(suppressed_) +
+                     (suppressed_ == 1 ? " more line" : " more lines") + " left out");
             }
             suppressed_ = 0;
         }

@@ -10,21 +10,22 @@
 namespace tactus
 {
 
-/// Ranges of an object's material, from an option of hrtc, a scene file or a file of poses.
+/// Ranges of a material's values in options of hrtc, scene files and pose files.
 inline constexpr double kSoftest_n_per_m = 1.0;
-inline constexpr double kStiffest_n_per_m = 3'000.0;    ///< Also the maximum of --stiffness.
-inline constexpr double kSoftestTurn_nm_per_rad = 1e-3; ///< Minimum of --angular-stiffness.
-inline constexpr double kStiffestTurn_nm_per_rad = 100.0;
+inline constexpr double kStiffest_n_per_m = 3'000.0; ///< Also the maximum of --stiffness.
+inline constexpr double kSoftest_nm_per_rad = 1e-3;  ///< Minimum of --angular-stiffness.
+inline constexpr double kStiffest_nm_per_rad = 100.0;
 inline constexpr double kRoughest = 3.0;
 inline constexpr double kMostDamped_n_s_per_m = 20.0; ///< Maximum of damping and of viscosity.
 
 /// Text of the ranges, for messages.
 inline constexpr std::string_view kMaterialRanges =
-    "1 to 3000 N/m, friction of 0 to 3, the dynamic one at most the static one, damping and "
-    "viscosity of 0 to 20 N s/m, and a texture's height of at most 1/32 of its length of 0.0001 to "
-    "1 m";
+    "a stiffness of 1 to 3000 N/m, friction of 0 to 3, the dynamic friction at most the static "
+    "friction, damping and viscosity of 0 to 20 N s/m, and a texture height of at most 1/32 of the "
+    "texture length of 0.0001 to 1 m";
 
-/// True if all values are in range. A material without a stiffness has that of the tool.
+/// True if all values are in range. Material{}'s stiffness, which means that of the tool, is in
+/// range.
 [[nodiscard]] constexpr bool is_in_range(const Material& material) noexcept
 {
     const bool has_stiffness = material.stiffness_n_per_m != Material{}.stiffness_n_per_m;
@@ -39,7 +40,8 @@ inline constexpr std::string_view kMaterialRanges =
            is_texture(material.texture_height_m, material.texture_length_m);
 }
 
-/// Nearest material in range to one that is_sound().
+/// Clamps stiffness, friction, damping and viscosity of a material, which must pass is_sound(),
+/// into their ranges.
 [[nodiscard]] constexpr Material within_ranges(Material material) noexcept
 {
     const bool has_stiffness = material.stiffness_n_per_m != Material{}.stiffness_n_per_m;

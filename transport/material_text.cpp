@@ -44,17 +44,17 @@ std::size_t place_of(std::string_view key)
                                     kMaterialKeys.begin());
 }
 
-/// Fault of a combination of values that are each in range; empty for a valid material.
+/// Fault of values that are valid alone but not together; empty for a valid material.
 std::string fault_of(const Material& material)
 {
     if (material.dynamic_friction > material.static_friction)
     {
-        return fmt::format("the dynamic friction, {}, is more than the static one, {}",
+        return fmt::format("the dynamic friction, {}, is above the static friction, {}",
                            material.dynamic_friction, material.static_friction);
     }
     return is_in_range(material) ? ""
-                                 : "texture_height is at most 1/32 of texture_length, and that "
-                                   "0.0001 to 1 m";
+                                 : "texture_height must be at most 1/32 of texture_length, and "
+                                   "texture_length 0.0001 to 1 m";
 }
 
 Result<Material, Refusal> parse_in_order(std::string_view text)
@@ -73,13 +73,14 @@ Result<Material, Refusal> parse_in_order(std::string_view text)
         });
     if (const std::string fault = fault_of(material); !fault.empty())
     {
-        std::swap(n[1], n[2]); // The only fault that numbers in this form can have in combination.
+        // With four values, friction in the wrong order is the only possible fault.
+        std::swap(n[1], n[2]);
         return not_of_form(text, kInOrder.text, fault, fmt::format("{}", fmt::join(n, ",")));
     }
     return material;
 }
 
-/// Refusal of a text with a pair that has no key.
+/// Refusal of `text` because `pair`, a part of it, does not begin with a known key and '='.
 Refusal no_key(std::string_view text, std::string_view pair)
 {
     const std::string_view key = pair.substr(0, pair.find('='));
@@ -98,7 +99,7 @@ Refusal no_key(std::string_view text, std::string_view pair)
     }
     return not_of_form(
         text, kByName,
-        fmt::format("'{}' has no key of {}", printable(pair), fmt::join(names, ", ")));
+        fmt::format("'{}' has none of the keys {}", printable(pair), fmt::join(names, ", ")));
 }
 
 } // namespace

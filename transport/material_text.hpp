@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// Key of one value of a material, the same in options, scene files and files of poses.
+/// Key of one value of a material, the same in options, scene files and pose files.
 struct MaterialKey
 {
     std::string_view name;
@@ -29,14 +29,14 @@ inline constexpr std::array<MaterialKey, 7> kMaterialKeys{{
     {"texture_length", &Material::texture_length_m},
 }};
 
-/// Form that parse_material_keys() takes; for messages.
+/// Form of parse_material_keys()'s text, for messages.
 inline constexpr std::string_view kMaterialKeysForm =
     "any of stiffness=, static=, dynamic=, damping=, viscosity=, texture_height= and "
     "texture_length=, with commas between";
 
-/// Builds a material from `value_of`, a function from a key to an optional value. Defaults of
-/// missing keys: the tool's stiffness, the static friction for the dynamic one, and 0 for the rest.
-/// Ranges are not checked.
+/// Builds a material from `value_of`, which maps a key to an optional value. A missing dynamic
+/// friction equals the static one; other missing values stay those of Material{}. Ranges are not
+/// checked.
 template <typename ValueOf>
 [[nodiscard]] Material material_of(const ValueOf& value_of)
 {
@@ -51,10 +51,10 @@ template <typename ValueOf>
     return material;
 }
 
-/// Reads KEY=VALUE[,KEY=VALUE...], each key once, with values within the ranges of is_in_range().
+/// Reads KEY=VALUE[,KEY=VALUE...], each key once. Values out of range are refused (is_in_range()).
 [[nodiscard]] Result<Material, Refusal> parse_material_keys(std::string_view text);
 
-/// Reads the same form, or STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]].
+/// Reads either the form of parse_material_keys() or STIFFNESS[,STATIC[,DYNAMIC[,DAMPING]]].
 [[nodiscard]] Result<Material, Refusal> parse_material(std::string_view text);
 
 } // namespace tactus

@@ -7,14 +7,14 @@
 #include <cstdint>
 #include <string>
 
-// Any thread: values; their texts allocate.
+// Any thread: these are values; their strings allocate.
 namespace tactus
 {
 
 /// Identity of a model on the wire.
 struct ModelIdentity
 {
-    std::string name; ///< Published name; valid.
+    std::string name; ///< Published name; passes is_valid_name().
     ContentHash hash{};
     std::uint32_t revision{0};
 

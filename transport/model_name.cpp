@@ -74,7 +74,7 @@ Result<ModelSelector, Refusal> parse_selector(std::string_view text)
         if (!selector.hash && !is_valid_server(pin))
         {
             return Refusal{"'" + printable(pin) +
-                           "' behind @ is neither a hash of 32 hexadecimal digits nor a server, "
+                           "' after @ is neither a hash of 32 hexadecimal digits nor a server, "
                            "MACHINE[:PROCESS] or cert: and 12 digits of 0-9 a-f"};
         }
         selector.server = selector.hash ? "" : pin;

@@ -14,8 +14,8 @@
 namespace tactus
 {
 
-/// Assembles a whole from parts that arrive in any order and more than once. The owner of the whole
-/// verifies its bytes.
+/// Assembles a header or base mesh from its parts, in any order, each possibly repeated. The caller
+/// verifies the hash of the whole.
 class PartIntake
 {
 public:
@@ -28,7 +28,8 @@ public:
     {
     }
 
-    /// Stores a part. False if it has arrived before, or is of another kind or size.
+    /// Stores a part. False, with nothing changed, for a part received before or of another kind or
+    /// size.
     bool receive(ContentKey key, std::span<const std::byte> bytes)
     {
         if (key.kind != kind_ || key.number >= is_resident_.size() || is_resident_[key.number] ||
@@ -43,7 +44,7 @@ public:
         return true;
     }
     [[nodiscard]] std::size_t missing() const noexcept { return missing_; }
-    /// Appends the missing parts to `keys` until it holds `most`.
+    /// Appends keys of missing parts to `keys`, until none is missing or `keys` holds `most`.
     void list_missing(std::vector<ContentKey>& keys, std::size_t most) const
     {
         for (std::uint32_t i = 0; i < is_resident_.size() && keys.size() < most; ++i)
@@ -59,7 +60,7 @@ public:
 private:
     ContentKind kind_{ContentKind::base};
     std::vector<std::byte> bytes_;
-    std::vector<bool> is_resident_; ///< Received parts, by number.
+    std::vector<bool> is_resident_; ///< True for each received part, by number.
     std::size_t missing_{0};
 };
 

@@ -16,9 +16,10 @@ namespace
 {
 
 constexpr std::size_t kStep = std::size_t{64} << 10U;
-/// Share of pages in the optional memory of streamed models, in percent.
+/// Share of pages in the memory of streamed models beyond the minimum, in percent.
 constexpr std::size_t kPagesOfStreamedModels = 60;
-/// Divisor of the share of index pages in the memory, as for resident models.
+/// Index pages of streamed models get 1 / kIndexShare of all memory, as those of resident models
+/// do.
 constexpr std::size_t kIndexShare = 64;
 constexpr std::size_t kMostSteps = (std::size_t{1} << 40U) / kStep;
 
@@ -37,8 +38,9 @@ bool try_plan_pools(const FrameSetup& setup, std::span<const ModelHeader> header
     {
         return false;
     }
-    // The ChunkLoader's need follows from the number of pages, and that from the memory left beside
-    // it. Usually the first guess fits; otherwise halving finds the least value that does.
+    // The ChunkLoader's memory depends on the number of pages, which depends on the memory left
+    // beside the ChunkLoader. If the first estimate does not fit, a bisection finds the least value
+    // that does.
     std::size_t too_little = 0;
     std::size_t too_much = bytes - common;
     std::size_t chunk_loader = 0;

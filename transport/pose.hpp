@@ -9,12 +9,12 @@
 #include <cstddef>
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Any thread: no call waits or allocates, and results depend on the arguments alone.
 namespace tactus
 {
 
-/// Pose of an object: world = translation + scale x rotation x point of the source mesh. It equals
-/// hrtc's --place, except for the form of the rotation.
+/// Pose of an object: world = translation + scale x rotation x point of the source mesh. hrtc's
+/// --place option has the same values, except for its form of the rotation.
 struct Pose
 {
     std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0}; ///< Unit quaternion x, y, z, w.
@@ -39,7 +39,7 @@ inline constexpr std::size_t kPoseRefusals = 5;
 inline constexpr std::array<const char*, kPoseRefusals> kPoseRefusalNames{
     "not_newer", "not_finite", "rotation", "translation", "scale"};
 
-/// The same pose with a rotation of length 1, or the reason why its numbers are refused.
+/// Pose with its rotation scaled to length 1, or the reason why the pose is refused.
 [[nodiscard]] Result<Pose, PoseRefusal> checked_pose(const Pose& pose) noexcept;
 
 } // namespace tactus

@@ -7,8 +7,9 @@
 namespace tactus
 {
 
-/// Waiting time of one request for a piece. The request is overdue when it is repeated after a
-/// second in which a server was present and no answer came.
+/// Measures the wait of one request for a piece. The request becomes overdue at its first
+/// repetition after a second in which a server was present and the piece did not arrive. Times are
+/// in ns.
 class RequestClock
 {
 public:
@@ -20,8 +21,8 @@ public:
     {
     }
 
-    /// Records a repeated request; true once, when the request becomes overdue. After a pause of
-    /// more than `forgotten_ns` the second starts again.
+    /// Records a repetition; true if the request becomes overdue by it, once. After a pause of more
+    /// than `forgotten_ns` since the last repetition the second begins again.
     [[nodiscard]] bool request(std::int64_t now_ns, std::int64_t forgotten_ns)
     {
         if (now_ns - requested_ns_ > forgotten_ns)
@@ -33,11 +34,12 @@ public:
         is_overdue_ = is_overdue_ || runs_out;
         return runs_out;
     }
-    /// Records that no server was present.
-    void wait_for_host(std::int64_t now_ns) { hosted_ns_ = now_ns; }
+    /// Records that no server is present: the second begins again.
+    void wait_for_server(std::int64_t now_ns) { hosted_ns_ = now_ns; }
 
     [[nodiscard]] bool is_overdue() const { return is_overdue_; }
-    /// True if the request is overdue and was repeated within the last `forgotten_ns`.
+    /// True if the request is overdue and was repeated within the last `forgotten_ns`, so still
+    /// wanted.
     [[nodiscard]] bool is_missed(std::int64_t now_ns, std::int64_t forgotten_ns) const
     {
         return is_overdue_ && now_ns - requested_ns_ <= forgotten_ns;
@@ -46,8 +48,8 @@ public:
 
 private:
     std::int64_t opened_ns_{0};
-    std::int64_t requested_ns_{0}; ///< Time of the last request.
-    /// Start of the time in which the piece was wanted and a server was present.
+    std::int64_t requested_ns_{0}; ///< Time of the first request or of the last repetition.
+    /// Start of the second after which a repetition makes the request overdue.
     std::int64_t hosted_ns_{0};
     bool is_overdue_{false};
 };

@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
-// Any thread; the link belongs to one thread, the transport thread.
+// Any thread; `link` belongs to the transport thread.
 namespace tactus
 {
 
-/// Everything that a controller needs to start with a model, from any source. `header` has passed
-/// ModelHeader::parse; its root hash and the hash of `base` were verified.
+/// Data with which a controller starts a model, from a file or a server. `header` has passed
+/// ModelHeader::parse; its root hash and the hash of a non-empty `base` are verified.
 struct ServedModel
 {
     std::string name;
@@ -26,7 +26,7 @@ struct ServedModel
     std::vector<std::byte> header;
     std::vector<std::byte> base; ///< Coded base mesh; empty until it is fetched (base_fetch.hpp).
     std::unique_ptr<ChunkLink> link;
-    std::uint64_t host_epoch{0}; ///< Epoch of the server that sent the header; 0: from a file.
+    std::uint64_t server_epoch{0}; ///< Epoch of the server that sent the header; 0: from a file.
 };
 
 /// Verifies the base mesh's hash against the header (SpmRefusal::wrong_checksum), then parses it

@@ -8,14 +8,14 @@
 
 #include <string>
 
-// Any thread: values; their texts allocate.
+// Any thread: these are values; their strings allocate.
 namespace tactus
 {
 
 /// An object that a server shows to controllers.
 struct ShownObject
 {
-    std::string name;    ///< Name, for users and for files of poses; valid.
+    std::string name;    ///< Valid name, for users and pose files.
     ContentHash model{}; ///< Hash of a model that the server has.
     Material material;
     Pose pose;

@@ -18,8 +18,8 @@
 namespace tactus
 {
 
-/// The transport thread's slots. All models share them: any model may fill a slot that another one
-/// gave back. Transport thread only.
+/// Slots of the transport thread, shared by all models: a slot freed by one model may be filled for
+/// another. Transport thread only.
 class SlotBank
 {
 public:
@@ -30,39 +30,40 @@ public:
     [[nodiscard]] static std::size_t required_bytes(std::size_t pages,
                                                     std::size_t index_pages) noexcept;
 
-    /// Adds one model, in the order of the owners' numbers. `linker` must outlive the bank.
+    /// Adds the model numbered linker.owner(), the next number from 0. `linker` must outlive the
+    /// bank.
     void add(Linker& linker) { models_.push_back({&linker, {}, false}); }
 
-    /// Takes back the slots that the haptic thread freed, in its order, and reports each to the
-    /// linker that filled it. A model whose base mesh was freed has no base mesh any more.
+    /// Takes the slots that the haptic thread freed, in order, and reports each page to the linker
+    /// that filled it. The linker of a freed base mesh loses it.
     void take_back_freed();
-    /// Number of freed slots taken back, modulo 2^32, as in QueueEvent.
+    /// Number of freed slots taken so far, modulo 2^32; reported in each QueueEvent.
     [[nodiscard]] std::uint32_t freed_taken() const noexcept { return freed_taken_; }
 
     [[nodiscard]] std::size_t free_pages() const noexcept { return pages_.count; }
     [[nodiscard]] std::size_t free_index_pages() const noexcept { return index_pages_.count; }
 
-    /// Records that the cells for the model's base mesh were given back: requests for it are
-    /// outdated until the haptic thread confirms that it has the cells.
+    /// Records that the model's cells were returned without a base mesh. Requests for the mesh are
+    /// outdated until the haptic thread confirms the return through `freed`.
     void expect_news_of(std::uint32_t owner) { models_[owner].is_news_due = true; }
-    /// True if a request for the model's base mesh was made before the mesh, or its cells, were
-    /// given back.
+    /// True if a request of this generation for the model's base mesh must be ignored: the mesh, or
+    /// its cells, were returned later.
     [[nodiscard]] bool is_outdated(std::uint32_t owner, std::uint32_t generation) const noexcept;
 
-    /// Slot that take_page() takes; one must be free (asserted).
+    /// Slot that take_page() will take; one must be free (asserted).
     [[nodiscard]] std::uint32_t next_page() const noexcept { return pages_.next(); }
-    /// Takes the next slot; its return is reported to `linker`.
+    /// Takes slot next_page() out of the free ones; its release is reported to `linker`.
     void take_page(Linker& linker) noexcept;
 
     [[nodiscard]] std::uint32_t next_index_page() const noexcept { return index_pages_.next(); }
     void take_index_page(std::uint32_t owner, IndexPageId page) noexcept;
-    /// Slot of a model's index page until it is taken back, or IdTable::kAbsent.
+    /// Slot of a model's index page, until the haptic thread frees it; otherwise IdTable::kAbsent.
     [[nodiscard]] std::uint32_t find_index_page(std::uint32_t owner,
                                                 IndexPageId page) const noexcept
     {
         return index_slot_of_.find(PagePool::first_key(owner) + page.value);
     }
-    /// Entries that verify the chunks of the index page in `slot`, which must hold one.
+    /// Sizes and hashes of the chunks of the index page in `slot`.
     [[nodiscard]] std::span<ChunkEntry, kChunksPerIndexPage> entries(std::uint32_t slot) noexcept
     {
         return index_[slot].entries;
@@ -91,12 +92,13 @@ private:
     struct KnownModel
     {
         Linker* linker{nullptr};
-        std::optional<std::uint32_t> base_went; ///< Generation in which the base mesh was freed.
+        /// Lowest valid generation of its requests, once a mesh was freed.
+        std::optional<std::uint32_t> base_went;
         bool is_news_due{false};
     };
 
     SlotQueues& queues_;
-    std::vector<KnownModel> models_; ///< Models by owner number.
+    std::vector<KnownModel> models_; ///< Models by number.
     Slots pages_;
     Slots index_pages_;
     std::span<Linker*> linkers_; ///< Linker by page slot; null while the slot is free.

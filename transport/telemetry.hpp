@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <type_traits>
 
-// Any thread: values; no call waits or allocates.
+// Any thread: these are values; no call waits or allocates.
 namespace tactus
 {
 
@@ -36,16 +36,17 @@ struct ToolTelemetry
     bool operator==(const ToolTelemetry&) const = default;
 };
 
-/// State of one tool and one object near it.
+/// State of a pair: one tool and one object near it.
 struct PairTelemetry
 {
     /// Epoch of the server that shows the object; 0: placed by the controller.
-    std::uint64_t host_epoch{0};
-    std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
+    std::uint64_t server_epoch{0};
+    /// Number of the object on its server, or on the controller if server_epoch is 0.
+    std::uint32_t object{0};
     std::uint8_t tool{0};
     AnswerKind kind{AnswerKind::bounded};
-    double lower_m{0.0};             ///< Proven lower bound of the distance from the tool's core.
-    double upper_m{0.0};             ///< Proven upper bound; infinite while nothing is known.
+    double lower_m{0.0}; ///< Proven lower bound of the distance between tool core and object.
+    double upper_m{0.0}; ///< Proven upper bound of that distance; infinite while unknown.
     std::array<double, 3> point_m{}; ///< Nearest point on the object, in the world.
     /// Force of the tool on the object; estimated if the tool touches several objects.
     std::array<double, 3> force_n{};
@@ -53,7 +54,7 @@ struct PairTelemetry
     bool operator==(const PairTelemetry&) const = default;
 };
 
-/// Slots of one pool.
+/// Number of used slots and of all slots of one pool.
 struct PoolTelemetry
 {
     std::uint32_t used{0};
@@ -62,37 +63,39 @@ struct PoolTelemetry
     bool operator==(const PoolTelemetry&) const = default;
 };
 
-/// State of one model on a controller, and of the object that its server moves.
+/// State of one model on a controller, and of the object that follows its server's poses.
 struct ModelTelemetry
 {
-    /// Use of the page pool. Capacities of all pools are 0 for a streamed model.
+    /// Pages in use. The capacities of all four pools are 0 for a streamed model.
     PoolTelemetry pages;
     PoolTelemetry faces;
     PoolTelemetry blocks;
     PoolTelemetry nodes;
     ModelStage stage{ModelStage::resident};
-    bool host_gone{false};
+    bool server_gone{false};
     bool is_static{false};       ///< True if the model is completely resident and refined.
-    bool follows_poses{false};   ///< True if a server shows the object.
-    std::int64_t pose_age_ns{0}; ///< Time since the server was heard.
+    bool follows_poses{false};   ///< True if a server sets the pose of the object.
+    std::int64_t pose_age_ns{0}; ///< Time since the server of the poses was last heard.
     std::uint64_t poses_refused{0};
-    std::uint64_t pieces{0}; ///< Index pages and chunks passed on since the start.
-    /// Mean time from request to hand-over since the last sample; 0: none.
+    /// Index pages and chunks handed to the haptic thread since the start.
+    std::uint64_t pieces{0};
+    /// Mean time from a piece's request until its hand-over, since the last sample; 0: no piece.
     std::int64_t piece_wait_ns{0};
 
     bool operator==(const ModelTelemetry&) const = default;
 };
 
-/// Maximum number of models in telemetry: those with the lowest numbers.
+/// Maximum number of models in Telemetry, which has those with the lowest numbers.
 inline constexpr std::uint32_t kMaxShownModels = 8;
 
-/// Report of one frame and of all frames before it. Counts are frames since the start.
+/// State at the end of one frame, and counts of frames since the start.
 struct Telemetry
 {
     std::uint64_t frame{0}; ///< Number of frames run.
     std::int64_t period_ns{0};
     std::int64_t time_ns{0}; ///< Start of the frame on the controller's clock.
-    std::uint64_t exact{0};  ///< Frames whose worst answer was exact; the next ones likewise.
+    /// Frames whose worst answer was exact; the four counts below likewise for their kinds.
+    std::uint64_t exact{0};
     std::uint64_t separated{0};
     std::uint64_t bounded{0};
     std::uint64_t stale{0};
@@ -113,9 +116,9 @@ struct Telemetry
 };
 
 static_assert(std::is_trivially_copyable_v<Telemetry>);
-/// The haptic thread copies a Telemetry into a mailbox in every frame, 8 bytes at a time;
-/// docs/architecture.md ("Threads") states the cost. If more tools, objects or fields make it
-/// larger than this, measure the cost again and update the number here and the time there.
+/// Bound of the time of the haptic thread, which copies a Telemetry into a mailbox each frame. If
+/// the size grows, measure that time again and update this number and docs/architecture.md
+/// ("Threads").
 static_assert(sizeof(Telemetry) <= 8'752);
 
 } // namespace tactus

@@ -8,18 +8,19 @@
 #include "transport/pose.hpp"
 #include "transport/telemetry.hpp"
 
-// Any thread, the haptic one too: functions of their arguments alone; no call waits or allocates.
+// Any thread, including the haptic one: no call waits or allocates, and results depend on the
+// arguments alone.
 namespace tactus
 {
 
-/// Telemetry of one tool, one pair and one model of a frame. Fields that only the transport knows
-/// (server, poses, pieces) stay zero; objects have the controller's numbers.
+/// Telemetry of one tool, pair or model of a frame. Fields that the frame does not know (server,
+/// poses, pieces) stay zero; objects have the controller's numbers.
 [[nodiscard]] ToolTelemetry telemetry_of(const ToolState& state, const DeviceRecord& device,
                                          const ToolOutput& output) noexcept;
 [[nodiscard]] PairTelemetry telemetry_of(const PairOutput& output) noexcept;
 [[nodiscard]] ModelTelemetry telemetry_of(const ModelOutput& output) noexcept;
 
-/// Pose of an object in its wire form.
+/// Pose on the wire of an object's placement.
 [[nodiscard]] Pose pose_of(const Similarity& place) noexcept;
 
 [[nodiscard]] inline std::array<double, 3> parts_of(const Vec3& vector) noexcept

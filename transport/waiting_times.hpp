@@ -12,8 +12,8 @@
 namespace tactus
 {
 
-/// Distribution of waiting times of pieces: counts in steps of a quarter of a millisecond, up to
-/// half a second, and the longest time. 16 KiB, no allocation. One thread.
+/// Histogram of the waiting times of pieces in steps of 0.25 ms up to 512 ms, and the longest time.
+/// 16 KiB, no allocation. One thread.
 class WaitingTimes
 {
 public:
@@ -27,8 +27,8 @@ public:
         longest_ns_ = std::max(longest_ns_, waited);
     }
 
-    /// Upper end of the first step that covers a share, 0 .. 1, of all times. 0 without times; the
-    /// longest time if the share ends beyond the steps.
+    /// Upper end, in ms, of the first step up to which the histogram has at least `share` (0 to 1)
+    /// of all times. 0 without times; the longest time if that step is the last.
     [[nodiscard]] double quantile_ms(double share) const noexcept
     {
         const auto enough =
@@ -64,7 +64,7 @@ public:
 private:
     static constexpr std::int64_t kStep_ns = 250'000;
 
-    /// Counts by step; the last one is for longer times.
+    /// Number of times in each step; the last step has all longer times.
     std::array<std::uint64_t, 2'049> counts_{};
     std::uint64_t total_{0};
     std::int64_t sum_ns_{0};

@@ -267,12 +267,13 @@ def plain_comments(tree):
 def old_names(tree):
     """No name of docs/internals/renamed.tsv is used, where it can't be a word of English."""
     table = 'docs/internals/renamed.tsv'
+    refusals = 'tests/unit/hrtc/wrong_usages.txt'
     if not tree.exists(table):
         return
     names = {row.split('\t')[1] for row in tree.text(table).splitlines()[1:]
              if row.split('\t')[0] in ('option', 'class', 'metric', 'C, Python')}
     names = [name for name in names if re.fullmatch(r'--[a-z-]+|\w+_\w+|[A-Z][a-z]+[A-Z]\w*', name)]
-    paths = [path for path in tree.paths if path not in (table, 'cmake/checks/guards.py') and
+    paths = [path for path in tree.paths if path not in (table, refusals, 'cmake/checks/guards.py') and
              not path.startswith(('docs/internals/decisions/', 'docs/benchmarks/'))]
     pattern = r'(?<![\w-])(' + '|'.join(sorted(names)) + r')(?![\w-])'
     for path, line, match in tree.matches(pattern, paths):

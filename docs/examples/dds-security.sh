@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # dds-security.sh FOLDER [CYCLONEDDS.XML]: keys, certificates and permissions for DDS
-# Security, into a new FOLDER, by openssl: one role for hosts, one for controllers. Without a
-# configuration of your own, hosts and controllers are those of this machine. It writes
+# Security, into a new FOLDER, by openssl: one role for servers, one for controllers. Without a
+# configuration of your own, servers and controllers are those of this machine. It writes
 #
-#     host.xml, controller.xml   for CYCLONEDDS_URI of spm_publish and of hrtc
+#     server.xml, controller.xml   for CYCLONEDDS_URI of spm_publish and of hrtc
 #
 # They are good for domains 0 to 230: Cyclone takes no higher ones in these files. Keep ca.key apart
 # from both machines; who has it makes roles. docs/security.md tells the rest.
@@ -125,7 +125,7 @@ plugins() {
 
 configure() { # configure ROLE: ROLE.xml, the settings with the role's security.
     local text=$settings index=auto
-    [[ $1 == host ]] || index=none
+    [[ $1 == server ]] || index=none
     if [[ -z "$text" ]]; then
         text="<CycloneDDS><Domain id=\"any\">
 <General><Interfaces><NetworkInterface name=\"lo\" multicast=\"false\"/></Interfaces>
@@ -140,7 +140,7 @@ configure() { # configure ROLE: ROLE.xml, the settings with the role's security.
         "${text#*</Domain>}" >"$1.xml"
 }
 
-role host catalogue chunks objects motion -- wanted telemetry refinement_state catalogue
+role server catalogue chunks objects motion -- wanted telemetry refinement_state catalogue
 role controller wanted telemetry refinement_state -- catalogue chunks objects motion
 rm -f -- *.csr openssl.log
 echo "$PWD/host.xml and $PWD/controller.xml are for CYCLONEDDS_URI"

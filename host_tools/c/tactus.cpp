@@ -41,10 +41,10 @@ using namespace tactus;
 
 struct tactus_model
 {
-    std::unique_ptr<dds::DdsClient> client; ///< First member, since it must outlive the link.
+    std::unique_ptr<dds::DdsClient> client; ///< First member, since it must outlive `served`.
     ServedModel served;
     std::optional<ModelHeader> header; ///< View of `served`.
-    bool is_taken{false}; ///< True while a frame has it; protected by `registry_mutex`.
+    bool is_taken{false}; ///< True while a frame uses the model; protected by `registry_mutex`.
 };
 
 struct tactus_static_model
@@ -68,7 +68,7 @@ struct tactus_frame
     std::uint32_t objects{0};
     std::vector<Similarity> places;                ///< Present places of the objects in the frame.
     ObjectTouches touches;                         ///< Touches after the last frame.
-    std::array<bool, kMaxTools> is_rate_limited{}; ///< Flags by tool, from the last frame.
+    std::array<bool, kMaxTools> is_rate_limited{}; ///< Flags by tool in the last frame.
     ObjectSpeedLimit belief;
     std::int64_t period_ns{0};
     /// Time of the frames, written by tactus_frame_run() and read by tactus_frame_load().
@@ -80,14 +80,14 @@ struct tactus_frame
 namespace
 {
 
-/// Fault of a call; its result is returned.
+/// Exception for a fault; the call returns `result` and writes `text`.
 struct Fault
 {
     tactus_result result;
     std::string text;
 };
 
-/// Existing frames, to detect shared memory and models.
+/// Mutex and list of existing frames, to detect memory or models used twice.
 std::mutex registry_mutex;
 std::vector<const tactus_frame*>& registry()
 {
@@ -146,7 +146,7 @@ const T& given(const T* pointer, const char* name)
 {
     if (pointer == nullptr)
     {
-        refuse(TACTUS_BAD_ARGUMENT, "{}: null", name);
+        refuse(TACTUS_BAD_ARGUMENT, "{}: null pointer", name);
     }
     return *pointer;
 }
@@ -163,8 +163,8 @@ void check_size(const Record& record, const char* name)
     if (record.size != sizeof(Record))
     {
         refuse(TACTUS_BAD_VERSION,
-               "{}: its size is {}, this library's is {}; was it made for another version, or by "
-               "none of the _default functions?",
+               "{}: size is {}, this library needs {}; compile with the tactus.h of this version, "
+               "and set size (the _default functions do)",
                name, record.size, sizeof(Record));
     }
 }
@@ -173,7 +173,8 @@ void check_abi(std::uint32_t abi)
 {
     if (abi != TACTUS_ABI)
     {
-        refuse(TACTUS_BAD_VERSION, "made for ABI version {}; this library has {}", abi, TACTUS_ABI);
+        refuse(TACTUS_BAD_VERSION,
+               "the program was compiled for ABI version {}; this library has {}", abi, TACTUS_ABI);
     }
 }
 
@@ -203,8 +204,8 @@ void check_positions(const double* values_m, std::size_t count, const char* name
     {
         if (!(std::abs(values_m[i]) < kGoalRange_m)) // Also refuses NaN.
         {
-            refuse(TACTUS_BAD_ARGUMENT, "{}: element {} is {}; below {} m is allowed", name, i,
-                   values_m[i], kGoalRange_m);
+            refuse(TACTUS_BAD_ARGUMENT, "{}: element {} is {}; its magnitude must be below {} m",
+                   name, i, values_m[i], kGoalRange_m);
         }
     }
 }
@@ -269,7 +270,7 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
                 kShadingWidthMax_m, name + "shading_m");
     if (tool.shading_m != 0.0 && tool.shape != TACTUS_SPHERE)
     {
-        refuse(TACTUS_BAD_ARGUMENT, "{}shading_m: {:g}; only a sphere feels it", name,
+        refuse(TACTUS_BAD_ARGUMENT, "{}shading_m: {:g}; only a sphere has force shading", name,
                tool.shading_m);
     }
     for (const double half_m : tool.half_m)
@@ -310,7 +311,8 @@ ObjectPose pose_of(const tactus_pose& pose, const std::string& name)
     place.rotation = to_rotation(pose.rotation);
     if (!is_rotation(place.rotation, kRotationTolerance))
     {
-        refuse(TACTUS_BAD_ARGUMENT, "{}rotation: not a rotation to {}", name, kRotationTolerance);
+        refuse(TACTUS_BAD_ARGUMENT, "{}rotation: not a rotation within {}", name,
+               kRotationTolerance);
     }
     place.rotation = orthonormalised(place.rotation);
     place.translation_m = to_vec(pose.translation_m);
@@ -345,7 +347,8 @@ Material material_of(const tactus_material& from)
     return material;
 }
 
-/// Adds a change for the next frame; checks the object's number.
+/// Adds a change for the next frame; it replaces a pending change of the same kind and object.
+/// Refuses an unknown object, and more than kMaxSceneChanges changes.
 void add_change(tactus_frame& frame, const SceneChange& change)
 {
     check_range(change.number, 0, frame.objects - 1, "object");
@@ -358,12 +361,12 @@ void add_change(tactus_frame& frame, const SceneChange& change)
     }
     else if (!frame.changes.try_push_back(change))
     {
-        refuse(TACTUS_BUSY, "{} objects were placed or changed, or are being carried; run a frame",
+        refuse(TACTUS_BUSY, "{} changes of objects are pending; run a frame first",
                frame.changes.size());
     }
 }
 
-/// Records of the library that correspond to the caller's; the caller keeps the models.
+/// The caller's set-up, converted to types of the library. The models remain the caller's.
 struct Scene
 {
     std::vector<ToolSpec> tools;
@@ -422,7 +425,7 @@ void plan_pools(const tactus_setup& from, std::size_t bytes, Scene& scene)
     std::vector<ModelCapacities> capacities(from.model_count);
     if (!try_plan_pools(scene.setup, scene.headers, bytes, 0, capacities))
     {
-        refuse(TACTUS_REFUSED, "memory: {} bytes; the models need {} at least", bytes,
+        refuse(TACTUS_REFUSED, "memory: {} bytes; the models need at least {}", bytes,
                least_pool_bytes(scene.setup, scene.headers, 0));
     }
     for (std::uint32_t i = 0; i < from.model_count; ++i)
@@ -433,7 +436,7 @@ void plan_pools(const tactus_setup& from, std::size_t bytes, Scene& scene)
     scene.setup.models = scene.sources;
 }
 
-/// Registers a frame; refuses memory or a model of another one.
+/// Registers a frame; refuses memory or a model that another frame uses.
 void enter(tactus_frame& frame)
 {
     const std::lock_guard lock(registry_mutex);
@@ -444,7 +447,7 @@ void enter(tactus_frame& frame)
         const std::byte* others = other->memory.data();
         if (std::less<>{}(begin, others + other->memory.size()) && std::less<>{}(others, end))
         {
-            refuse(TACTUS_BUSY, "memory: a frame that has not ended uses it");
+            refuse(TACTUS_BUSY, "memory: another frame uses this memory; end that frame first");
         }
     }
     for (const tactus_model* model : frame.models)
@@ -452,7 +455,8 @@ void enter(tactus_frame& frame)
         if (model->is_taken || std::ranges::count(frame.models, model) > 1)
         {
             refuse(TACTUS_BUSY,
-                   "models: '{}' serves another frame, or this one twice; open it again",
+                   "models: '{}' is in another frame, or twice in this one; open the model once "
+                   "for each use",
                    model->served.name);
         }
     }
@@ -500,7 +504,8 @@ void load(tactus_frame& frame)
     frame.chunk_loader->step(frame.now_ns.load(std::memory_order_relaxed));
 }
 
-/// Greatest distance that the move of an object causes at a place that some tool may touch.
+/// Greatest distance, in metres, that a move of the object to `to` causes at a place that a tool
+/// may touch.
 double way_near_m(const tactus_frame& frame, std::uint32_t object, const Similarity& to)
 {
     double way_m = 0.0;
@@ -515,7 +520,8 @@ double way_near_m(const tactus_frame& frame, std::uint32_t object, const Similar
     return way_m;
 }
 
-/// Moves an object in this frame. False if the move must continue in the next one.
+/// Moves an object in this frame, rate-limited near tools. False if the move must continue in the
+/// next frame.
 bool carry(tactus_frame& frame, SceneChange& move)
 {
     const double since_s = 1e-9 * static_cast<double>(frame.period_ns);
@@ -538,7 +544,8 @@ bool carry(tactus_frame& frame, SceneChange& move)
     return !is_held;
 }
 
-/// Changes of this frame; moves that need further frames stay for the next one.
+/// Removes and returns the pending changes for this frame. Moves that need further frames stay
+/// pending.
 StaticVector<SceneChange, kMaxSceneChanges> take_changes(tactus_frame& frame)
 {
     StaticVector<SceneChange, kMaxSceneChanges> changes = frame.changes;
@@ -562,7 +569,7 @@ void run_one(tactus_frame& frame)
     const auto changes = take_changes(frame);
     frame.output = frame.frame->run(
         {.tools = frame.states, .changes = changes.view(), .budgets = {}, .now_ns = now_ns});
-    // Input of the next frame's changes.
+    // The next frame's take_changes() reads the touches.
     list_touches(*frame.frame, frame.output.pairs, frame.belief, frame.touches);
     ++frame.frames;
 }
@@ -686,7 +693,7 @@ void check_poses(const tactus_frame& frame, const tactus_poses& poses)
     {
         if (!is_rotation(to_rotation(poses.rotations + 9 * i), kRotationTolerance))
         {
-            refuse(TACTUS_BAD_ARGUMENT, "poses.rotations: matrix {} is not a rotation to {}", i,
+            refuse(TACTUS_BAD_ARGUMENT, "poses.rotations: matrix {} is not a rotation within {}", i,
                    kRotationTolerance);
         }
     }
@@ -788,7 +795,8 @@ extern "C"
                                const std::lock_guard lock(registry_mutex);
                                if (model->is_taken)
                                {
-                                   refuse(TACTUS_BUSY, "'{}' serves a frame that has not ended",
+                                   refuse(TACTUS_BUSY,
+                                          "'{}' is in use by a frame; end the frame first",
                                           model->served.name);
                                }
                            }
@@ -907,7 +915,7 @@ extern "C"
                            if (reinterpret_cast<std::uintptr_t>(first) % TACTUS_ALIGNMENT != 0)
                            {
                                refuse(TACTUS_BAD_ARGUMENT,
-                                      "memory: does not start on a multiple of {} bytes",
+                                      "memory: the address is not a multiple of {} bytes",
                                       TACTUS_ALIGNMENT);
                            }
                            plan_pools(*setup, bytes, scene);

@@ -112,7 +112,7 @@ TACTUS_CALL void tactus_static_model_close(tactus_static_model* model);
 
 typedef enum tactus_shape
 {
-    TACTUS_SPHERE = 0,  /* Point with the radius. */
+    TACTUS_SPHERE = 0,  /* Sphere of the radius. */
     TACTUS_CAPSULE = 1, /* Segment from -half_m to half_m with the radius. */
     TACTUS_BOX = 2      /* Box of the half extents half_m with the radius. */
 } tactus_shape;
@@ -186,8 +186,9 @@ typedef struct tactus_setup
     double object_speed_max_m_per_s; /* 1e-6 to 1e6, see tactus_frame_place(). */
 } tactus_setup;
 
-/* Fill a record with defaults: identity pose, no friction; a tool of 500 N/m, 8 N, 0.5 N m, 1 m/s;
- * 1 ms and 0.5 m/s for objects; `size` and `abi`; all else 0. Null has no effect. */
+/* Fill a record with defaults and set `size`; members not named here are 0. Tool: 500 N/m, 8 N,
+ * 0.5 N m, 1 m/s. Object: identity pose, no friction. Set-up: `abi`, a period of 1 ms, objects of
+ * 0.5 m/s at most. A null pointer has no effect. */
 TACTUS_CALL void tactus_tool_default(tactus_tool* tool);
 TACTUS_CALL void tactus_object_default(tactus_object* object);
 TACTUS_CALL void tactus_material_default(tactus_material* material);
@@ -202,8 +203,9 @@ TACTUS_CALL tactus_result tactus_frame_make(const tactus_setup* setup, void* mem
 /* Ends a frame and releases its memory and models to the caller. Null has no effect. */
 TACTUS_CALL void tactus_frame_end(tactus_frame* frame);
 
-/* Runs one round of loading: data that the last frame requested arrive with the next one, from a
- * model server with a later one. May wait for a file, and allocates: not for a real-time thread. */
+/* Runs one round of loading. Data that the last frame requested are available to the next frame,
+ * or, from a model server, to a later frame. May wait for a file, and allocates: not for a
+ * real-time thread. */
 TACTUS_CALL tactus_result tactus_frame_load(tactus_frame* frame, tactus_error* error);
 
 /* Flags of a tool, for tactus_poses. */

@@ -31,7 +31,7 @@ public:
         bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
     }
 
-    /// Appends a field of up to 32 bits, lowest first; the counterpart of BitReader.
+    /// Appends a field of `bits` bits, at most 32, lowest bit first; the counterpart of BitReader.
     void write_bits(std::uint32_t bits, std::uint32_t value)
     {
         window_ |= std::uint64_t{value} << held_;
@@ -41,10 +41,10 @@ public:
             window_ >>= 8U;
         }
     }
-    /// Fills the last byte with zeros.
+    /// Fills the last byte with zero bits.
     void end_bits() { write_bits((8 - held_) % 8, 0); }
 
-    /// Ends a piece with the CRC-32C of all bytes written so far.
+    /// Appends the CRC-32C of all bytes written so far.
     void write_checksum() { write(crc32c(bytes_)); }
 
     [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return bytes_; }

@@ -112,9 +112,9 @@ void DecodedModel::link_all(std::span<const RefinementStatePage> pages, const st
         const std::uint64_t lacking = pages[slot].refined & ~linked_[slot];
         if (lacking != 0)
         {
-            damage.push_back(fmt::format("{}: chunk {}: {} of its records don't fit those that "
-                                         "they depend on",
-                                         name, pages[slot].chunk.value, std::popcount(lacking)));
+            damage.push_back(fmt::format(
+                "{}: chunk {}: {} of its records don't match the records that they depend on", name,
+                pages[slot].chunk.value, std::popcount(lacking)));
         }
     }
 }

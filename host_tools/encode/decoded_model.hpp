@@ -18,12 +18,12 @@
 namespace tactus
 {
 
-/// Reads a piece in its coded form, verified against its hash; a refusal names the piece.
+/// Function that reads a coded piece into `coded` and verifies its hash; a refusal names the piece.
 using ReadPiece =
     std::function<Result<Done, Refusal>(ContentKey key, std::vector<std::byte>& coded)>;
 
-/// A model's base mesh and its records in memory, parsed by the same reader as in the controller:
-/// 128 B a record. The header's bytes must outlive it.
+/// A model's base mesh and records in memory, parsed by the controller's reader: 128 B a record.
+/// The header's bytes must outlive the object.
 class DecodedModel
 {
 public:
@@ -40,7 +40,8 @@ public:
     [[nodiscard]] static DecodedModel decode(const ModelStore& store,
                                              std::vector<std::string>& damage);
 
-    /// Ids must be the model's, here and below; unchecked.
+    /// Header of the model. Ids passed to the functions below must be ids of this model; they are
+    /// not checked.
     [[nodiscard]] const ModelHeader& header() const noexcept { return header_; }
     [[nodiscard]] const VsplitRecord& record(RecordId id) const noexcept
     {
@@ -79,8 +80,9 @@ private:
 
     ModelHeader header_;
     std::vector<Page> pages_;
-    std::vector<std::uint64_t> linked_; ///< Linked records by page.
-    std::vector<std::uint32_t> slots_;  ///< Page by chunk, if resident.
+    std::vector<std::uint64_t> linked_; ///< Linked records of each page, one bit each.
+    /// Index into `pages_`, by chunk; 0 if the chunk is not resident.
+    std::vector<std::uint32_t> slots_;
     std::vector<Vec3f> base_positions_m_;
     std::vector<BaseFace> base_faces_;
     std::vector<std::uint32_t> base_next_;

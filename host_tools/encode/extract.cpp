@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A cut is a set of split records that contains the dependencies of each. Each face state is left
-/// by one record only, so the demand "this state must not be active" means "if this record's state
-/// is reached, that record is split", which has the form of a dependency. Following the demands
-/// from their start gives the smallest set that meets them all.
+/// A cut is a set of split records that contains the dependencies of each. Only one record ends
+/// each face state. The demand "this state must not be active" therefore means "if this state is
+/// reached, split that record", which has the form of a dependency. Following the demands from
+/// their start gives the smallest set that meets them all.
 
 #include "host_tools/encode/extract.hpp"
 
@@ -20,7 +20,7 @@ namespace tactus
 namespace
 {
 
-/// A thousandth of a quantum: far above rounding, far below any detail.
+/// Margin of the zone: far above rounding, far below any detail.
 constexpr double kZoneMargin_quanta = 1e-3;
 
 double bound_m(const DecodedModel& model, ErrorCode error)
@@ -34,7 +34,7 @@ std::uint32_t faces_added_by(const VsplitRecord& record)
     return (record.has_face(0) ? 1U : 0U) + (record.has_face(1) ? 1U : 0U);
 }
 
-/// The record that leaves each face state.
+/// Table of the record that ends each face state, that is, changes the face next.
 class NextRecords
 {
 public:
@@ -52,14 +52,15 @@ public:
         }
     }
 
-    /// None for a state that no record leaves.
+    /// Record that ends the state; none for a final state.
     [[nodiscard]] RecordId after(FaceId face, FaceState state) const
     {
         return next_[place_of(face, state)];
     }
 
 private:
-    static constexpr std::size_t kPlaces = 8; ///< Places in a star, as FaceState counts them.
+    /// Number of places in a star: FaceState has three bits for them.
+    static constexpr std::size_t kPlaces = 8;
     static_assert(kMaxStarFaces <= kPlaces);
 
     [[nodiscard]] std::size_t place_of(FaceId face, FaceState state) const
@@ -72,11 +73,12 @@ private:
     std::vector<RecordId> next_;
 };
 
-/// The records to be split, always with their dependencies.
+/// Set of the records to be split, always with their dependencies.
 class Cut
 {
 public:
-    /// No state with a bound above the limit stays active, now and after every require().
+    /// Starts with the smallest cut without an active face state of a bound above `limit_m`; each
+    /// require() keeps this property. None: no limit.
     Cut(const DecodedModel& model, std::optional<double> limit_m)
         : model_(model)
         , is_split_(model.header().counts().records)

@@ -16,7 +16,8 @@ namespace
 
 constexpr std::uint32_t kNever = 0xFFFF'FFFFU;
 
-/// First collapse that changes or removes each face; the face is original only before it.
+/// Index of the first collapse that changes or removes each face; before that collapse, the face is
+/// original.
 std::vector<std::uint32_t> find_first_changes(std::size_t faces,
                                               const std::vector<Collapse>& collapses)
 {

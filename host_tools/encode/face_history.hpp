@@ -14,7 +14,8 @@
 namespace tactus
 {
 
-/// States of the faces of one record's star before and after its split.
+/// States and error bounds of the faces of one record's star: of the fan before the split, of all
+/// faces after it.
 struct StarHistory
 {
     std::array<FaceState, kMaxFanFaces> before{};
@@ -23,17 +24,17 @@ struct StarHistory
     std::uint32_t depth{0};
 };
 
-/// States of every face between base and source.
+/// History of every face from the base mesh to the source mesh.
 struct FaceHistory
 {
-    std::vector<StarHistory> stars;    ///< Histories by RecordId.
-    std::vector<ErrorCode> base_error; ///< Bounds by FaceId of the base.
+    std::vector<StarHistory> stars;    ///< Histories, by RecordId.
+    std::vector<ErrorCode> base_error; ///< Error bounds of the base mesh's faces, by FaceId.
     std::uint32_t max_depth{0};
     ErrorCode max_error{0};
 };
 
-/// Replays the collapses in reverse, coarsest first, and records the last change of each face.
-/// Linear; 44 B a record.
+/// Reverts the collapses, coarsest first, and records the faces' states before and after each
+/// split. Linear; 44 B a record.
 [[nodiscard]] FaceHistory trace_faces(const QuantisedMesh& mesh,
                                       const Simplification& simplification,
                                       const Numbering& numbering);

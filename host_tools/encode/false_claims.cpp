@@ -28,7 +28,7 @@ namespace
 
 using GridPoint = std::array<std::int32_t, 3>;
 
-/// Above the rounding of distances, below any bound except zero.
+/// Tolerance of distances: above their rounding, below any bound except zero.
 constexpr double kSlack_quanta = 1e-3;
 /// Number of cuts. The first one splits no record, the last one half of them.
 constexpr std::uint32_t kCuts = 10;
@@ -44,7 +44,7 @@ bool holds(const QuantumBox& box, const QuantumBox& inner)
     return does;
 }
 
-/// Box with the margin of the writer.
+/// Box extended by one quantum on every side, the margin that find_influence() adds.
 QuantumBox grown(QuantumBox box)
 {
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -60,7 +60,7 @@ std::string text_of(const QuantumBox& box)
     return fmt::format("({}) to ({})", fmt::join(box.low, ", "), fmt::join(box.high, ", "));
 }
 
-/// Faces of a cut near a point: those in its slab along the longest axis.
+/// Finds the faces of a cut near a point: the model's longest axis is divided into slabs.
 class Slabs
 {
 public:
@@ -139,7 +139,7 @@ private:
         }
     }
 
-    /// Exact, since quanta are powers of two.
+    /// Position of a vertex, in quanta; exact, since a quantum is a power of two.
     [[nodiscard]] GridPoint place_of(VertexId vertex) const
     {
         const Vec3f& at_m = model_.position_m(vertex);
@@ -176,7 +176,8 @@ private:
         return box;
     }
 
-    /// Splits all records; stores the influence of each, and the resulting mesh.
+    /// Splits all records; stores the influence box of each, and the source mesh. Returns a fault,
+    /// if any.
     std::optional<std::string> refine()
     {
         Replay replay(model_);
@@ -263,7 +264,7 @@ private:
     /// coincide.
     void check_closed()
     {
-        // First vertex with the same position.
+        // First vertex with the same position, by vertex.
         std::vector<std::uint32_t> first(mesh_.positions.size());
         std::iota(first.begin(), first.end(), 0U);
         if (model_.header().is_closed())
@@ -292,7 +293,8 @@ private:
             tell("header: the mesh is stated as open; it is closed");
         }
     }
-    /// End of an edge that no face has in the opposite direction.
+    /// First end of a border edge, which no face has in the opposite direction; none if there is
+    /// none.
     [[nodiscard]] std::optional<std::uint32_t>
     find_border(std::span<const std::uint32_t> vertex_of) const
     {
@@ -337,7 +339,8 @@ private:
             const std::uint32_t bucket = bucket_of(face);
             if (bucket >= buckets)
             {
-                tell("face {}: is put into bucket {} of {}", face.value, bucket, buckets);
+                tell("face {}: is in bucket {}, but there are {} buckets", face.value, bucket,
+                     buckets);
                 return;
             }
             ++members[bucket];
@@ -347,7 +350,7 @@ private:
             const std::size_t right = std::min(kFacesInBucket, faces_.size() - i * kFacesInBucket);
             if (members[i] != right)
             {
-                tell("bucket {}: {} faces are put into it; it is for {}", i, members[i], right);
+                tell("bucket {}: has {} faces instead of {}", i, members[i], right);
                 return;
             }
         }
@@ -407,11 +410,11 @@ private:
         std::array<ChunkEntry, kChunksPerIndexPage> entries;
         for (std::uint32_t i = 0; i < counts_.index_pages(); ++i)
         {
-            // Both succeeded when the file was opened and decoded.
+            // Both steps succeeded when the file was opened and decoded.
             if (!store_.read({ContentKind::index_page, i}, coded) ||
                 !parse_index_page(coded, counts_, {i}, page, entries))
             {
-                tell("index page {}: can't be read any more", i);
+                tell("index page {}: can no longer be read", i);
                 return;
             }
             const QuantumBox stated = model_.header().index_entry({i}).box;
@@ -422,8 +425,8 @@ private:
             }
             if (!holds(grown(all), stated))
             {
-                tell("index page {}: its box in the header is {}; its records matter in {} quanta",
-                     i, text_of(stated), text_of(all));
+                tell("index page {}: its box in the header is {}; its records need {} quanta", i,
+                     text_of(stated), text_of(all));
                 return;
             }
             for (std::uint32_t at = 0; at < page.chunks; ++at)
@@ -434,15 +437,16 @@ private:
                 const bool is_in_page = holds(stated, needed);
                 if (!is_in_page || !holds(box, needed) || !holds(largest(stated, needed), box))
                 {
-                    tell("chunk {}: its influence box {}is {}; its records matter in {} quanta",
-                         chunk, is_in_page ? "" : "in the header ",
-                         text_of(is_in_page ? box : stated), text_of(needed));
+                    tell("chunk {}: its influence box {}is {}; its records need {} quanta", chunk,
+                         is_in_page ? "" : "in the header ", text_of(is_in_page ? box : stated),
+                         text_of(needed));
                     return;
                 }
             }
         }
     }
-    /// Form of a box and its margin in the format, within a page that contains the box.
+    /// Largest box that a file may have for `needed`: with its margin, clipped to the page's box,
+    /// rounded as in the format.
     [[nodiscard]] static QuantumBox largest(const QuantumBox& page, const QuantumBox& needed)
     {
         QuantumBox box = grown(needed);
@@ -491,7 +495,7 @@ private:
             const std::size_t end = cut == 0 ? 0 : order_.size() >> (kCuts - cut);
             for (; split < end; ++split)
             {
-                // The result is the same as in refine().
+                // The split succeeds, as it did in refine().
                 static_cast<void>(replay.split(order_[split]));
                 check_.progress(++done_);
             }
@@ -537,7 +541,8 @@ private:
         }
         for (const Vec3& place : places)
         {
-            double least = std::numeric_limits<double>::infinity(); // Distance beyond a bound.
+            // Least distance to a face, less its bound.
+            double least = std::numeric_limits<double>::infinity();
             for (const std::uint32_t face : slabs.near(place))
             {
                 const double bound = static_cast<double>(error_in_quanta(error_of(replay, {face})));
@@ -550,8 +555,8 @@ private:
             if (least > kSlack_quanta)
             {
                 const Vec3 at_m = source_m(place);
-                tell("error bounds: ({:.6g}, {:.6g}, {:.6g}) of the surface is {} of a mesh of {} "
-                     "faces",
+                tell("error bounds: the surface point ({:.6g}, {:.6g}, {:.6g}) is {} of a mesh of "
+                     "{} faces",
                      at_m.x(), at_m.y(), at_m.z(),
                      std::isfinite(least)
                          ? fmt::format("{:.3g} m beyond the bounds",
@@ -585,9 +590,9 @@ private:
     const HeaderFields& fields_;
     const ModelCounts counts_;
     const std::vector<RecordId> order_;
-    std::vector<QuantumBox> boxes_; ///< Boxes by record, including the dependents.
+    std::vector<QuantumBox> boxes_; ///< Influence boxes by record, including those of dependents.
     QuantisedMesh mesh_;            ///< Mesh of the source; vertices by their ids.
-    std::vector<FaceId> faces_;     ///< Ids of its faces.
+    std::vector<FaceId> faces_;     ///< Ids of the faces of `mesh_`, in their order.
     std::size_t done_{0};
     ClaimsFound found_;
 };

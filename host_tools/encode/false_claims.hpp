@@ -18,13 +18,15 @@ struct ClaimCheck
     /// Number of points of the source that are checked against the error bounds in each of some ten
     /// cuts, coarse to fine. They are spread evenly over the faces and deterministic.
     std::size_t places{2'000};
-    /// Callback after each record with the number done; every record counts twice.
+    /// Callback after each split with the number of splits so far: at most 1.5 times the number of
+    /// records.
     std::function<void(std::size_t done)> progress = [](std::size_t) {};
 };
 
 struct ClaimsFound
 {
-    /// Reason why the records cannot all be split, and then there are no claims; empty if they can.
+    /// Reason why a record cannot be split; `false_claims` is then empty. Empty if all can be
+    /// split.
     std::string contradiction;
     /// Claims of the model that are false, one line each: the claim, its place and the true value.
     std::vector<std::string> false_claims;

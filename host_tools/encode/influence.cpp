@@ -16,15 +16,15 @@ namespace
 using GridPoint = std::array<std::int32_t, 3>;
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Bound in whole quanta, plus one for the rounding of the test of a sphere against the box. No
-/// bound of a real mesh approaches the maximum; it only keeps boxes inside 32 bits.
+/// Margin of a box for an error bound, in quanta: the bound rounded up, plus one for the rounding
+/// of sphere tests. The maximum, 2^28, keeps boxes within 32 bits; no real bound approaches it.
 std::int32_t margin_of(ErrorCode error)
 {
     const double quanta = std::ceil(static_cast<double>(error_in_quanta(error))) + 1.0;
     return static_cast<std::int32_t>(std::min(quanta, 0x1p28));
 }
 
-/// Executes the collapses on a copy of the mesh and measures each star.
+/// Executes the collapses on a copy of the mesh and extends the influence boxes by each star.
 class Sweep
 {
 public:
@@ -71,7 +71,7 @@ private:
         }
     }
 
-    /// Stores the vertices around v, from the fan faces (v, wi, wi+1).
+    /// Stores the ring of the collapse: the vertices w0 .. wk, from the fan faces (v, wi, wi+1).
     void note_ring(const Collapse& collapse, RecordId record)
     {
         for (std::uint32_t i = 0; i < collapse.fan_size; ++i)

@@ -17,7 +17,7 @@
 namespace tactus
 {
 
-/// Regions of influence of records, and the vertices around each.
+/// Influence boxes of chunks, and the vertices around each record.
 struct Influence
 {
     /// Boxes by ChunkId: a sphere outside a chunk's box needs none of its records.
@@ -36,20 +36,20 @@ struct Influence
                                        const Simplification& simplification,
                                        const Numbering& numbering, const FaceHistory& history);
 
-/// Empty box; joined with a box it is that box.
+/// Empty box; join() of it with a box gives that box.
 inline constexpr QuantumBox kEmptyBox{
     {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max(),
      std::numeric_limits<std::int32_t>::max()},
     {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min(),
      std::numeric_limits<std::int32_t>::min()}};
 
-/// Extends `box` to include the other one.
+/// Extends `box` to include `other`.
 void join(QuantumBox& box, const QuantumBox& other);
 
-/// The least box that includes all of `boxes`, at least one.
+/// The least box that includes all of `boxes`; there must be at least one.
 [[nodiscard]] QuantumBox union_of(std::span<const QuantumBox> boxes);
 
-/// Form of a box in an index page: in steps of the page's box, rounded outward.
+/// Converts a box to the form of an index page: steps of the page's box, rounded outward.
 [[nodiscard]] InfluenceBox relative_to(const QuantumBox& page, const QuantumBox& box);
 
 } // namespace tactus

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Three times the centroid, which is an integer, and its face.
+/// A face and three times its centroid, which has integer coordinates.
 struct Centroid
 {
     std::array<std::int32_t, 3> sum{};
@@ -61,8 +61,9 @@ std::size_t longest_axis(std::span<const Centroid> cell)
     return longest;
 }
 
-/// Orders a cell. Cells of at most eight faces are one bucket in any order: their first rank is a
-/// multiple of eight, since every left part above is a power of two of at least eight.
+/// Orders a cell. Cells of at most eight faces stay unordered: each is one bucket, since its first
+/// rank is a multiple of eight. Every left part of a larger cell has a power of two of faces, at
+/// least eight.
 void order_cell(std::span<Centroid> cell)
 {
     while (cell.size() > 8)

@@ -32,7 +32,7 @@ public:
     [[nodiscard]] const Numbering& numbering() const noexcept { return numbering_; }
     [[nodiscard]] std::uint32_t max_depth() const noexcept { return history_.max_depth; }
     [[nodiscard]] ErrorCode max_error() const noexcept { return history_.max_error; }
-    /// Boxes by ChunkId, in quanta.
+    /// Influence boxes by ChunkId, in quanta.
     [[nodiscard]] std::span<const QuantumBox> influence_boxes() const noexcept
     {
         return influence_.chunks;
@@ -56,7 +56,7 @@ private:
     Numbering numbering_;
     FaceHistory history_;
     Influence influence_;
-    std::vector<std::uint32_t> buckets_; ///< Buckets by face of the mesh.
+    std::vector<std::uint32_t> buckets_; ///< Buckets of left_full_buckets(), by face of the mesh.
     std::vector<VsplitRecord> records_;
     std::vector<Vec3f> base_positions_m_;
     std::vector<BaseFace> base_faces_;

@@ -25,7 +25,7 @@ std::uint64_t spread_bits(std::uint64_t value)
     return (value | value << 2U) & 0x1249'2492'4924'9249U;
 }
 
-/// Low bits that a coordinate must lose to fit the 21 of a Morton code.
+/// Number of low bits to drop from coordinates, so that each fits the 21 bits of a Morton code.
 unsigned surplus_bits(const QuantisedMesh& mesh)
 {
     std::uint32_t all = 0;
@@ -47,7 +47,8 @@ std::uint64_t morton_code(const std::array<std::int32_t, 3>& position, unsigned 
     return code;
 }
 
-/// Vertices with the same code keep the order of their splits, coarsest first.
+/// Sorts the records of each tier by Morton code. Equal codes keep the order of splits, coarsest
+/// first.
 void order_records(const QuantisedMesh& mesh, const Simplification& simplification,
                    Numbering& numbering)
 {

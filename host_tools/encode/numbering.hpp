@@ -34,7 +34,7 @@ struct Numbering
 };
 
 /// Numbers a model. Deterministic; n log n, about 40 B a face while running. `simplification` must
-/// be one of `mesh`, with fewer than kMaxRecords collapses.
+/// come from `mesh` and have fewer than kMaxRecords collapses.
 [[nodiscard]] Numbering number_model(const QuantisedMesh& mesh,
                                      const Simplification& simplification);
 

@@ -22,7 +22,7 @@ Owner owner_of(FaceId face, FaceState state)
                            : Owner{state.record().value, Owner::Kind::record, {}};
 }
 
-/// Estimated bits of an owner; a chunk's own statistics decide the true number.
+/// Estimated size of a coded owner, in bits; the true size depends on the statistics of the chunk.
 std::uint32_t cost_of(const Owner& owner, RecordId id)
 {
     if (owner.kind == Owner::Kind::derived)
@@ -32,7 +32,8 @@ std::uint32_t cost_of(const Owner& owner, RecordId id)
     const std::uint32_t way =
         owner.value < id.value ? id.value - owner.value : owner.value - id.value;
     const auto width = static_cast<std::uint32_t>(std::bit_width(way));
-    // Far records are in coarser tiers and near the last one named.
+    // At most 12 bits: distant owners are in coarser tiers, coded relative to the last owner named
+    // there.
     return owner.kind == Owner::Kind::base ? 12 : 4 + std::min(width, 8U);
 }
 

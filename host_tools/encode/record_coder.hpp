@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// All records of a model for StarResolver: every record is available.
+/// Lookup for StarResolver in which every record of the model is linked.
 struct AllStars
 {
     std::span<const VsplitRecord> records;
@@ -26,15 +26,16 @@ struct AllStars
 
 /// Expresses records relative to others; the inverse of StarResolver.
 ///
-/// Any fan face may be the anchor; the cheapest by estimate is chosen. Of `fields` only
-/// `extent_quanta` and `max_depth` are used. The viewed data must outlive it. One thread at a time.
+/// Any fan face may be the anchor; the one with the least estimated size is chosen. Only
+/// `extent_quanta` and `max_depth` of `fields` are used. The viewed data must outlive the coder.
+/// One thread at a time.
 class RecordCoder
 {
 public:
     RecordCoder(const AllStars& stars, const ModelCounts& counts, const BaseView& base,
                 const HeaderFields& fields, float quantum_m);
 
-    /// Coded form of a record. It must resolve to the same record, which is checked.
+    /// Returns the coded form of a record; asserts that it resolves to the same record.
     [[nodiscard]] CodedRecord code(RecordId id);
 
 private:

@@ -11,8 +11,8 @@ namespace tactus
 namespace
 {
 
-/// Counts the boxes over each cell: a box adds +-1 at its eight corners, and running sums along the
-/// three axes extend that to its inside.
+/// Counts the boxes that cover each cell: a box adds +1 or -1 at its eight corners, and running
+/// sums along the three axes give the counts.
 class CoverCounter
 {
 public:

@@ -17,7 +17,8 @@ struct RegionGrid
 {
     std::uint32_t cell_quanta{0}; ///< Edge of a region; a power of two.
     std::array<std::uint32_t, 3> cells{};
-    std::vector<std::byte> occupied; ///< One bit a region; x runs fastest.
+    /// One bit a region, set if it may have surface; the x index runs fastest.
+    std::vector<std::byte> occupied;
     std::uint32_t occupied_count{0};
 
     [[nodiscard]] std::uint64_t count() const noexcept
@@ -29,7 +30,8 @@ struct RegionGrid
 /// The least power of two that cuts the longest axis into at most 16 cells.
 [[nodiscard]] std::uint32_t default_cell(const std::array<std::uint32_t, 3>& extent_quanta);
 
-/// Grid of a box without occupied cells. Allocates nothing, so that the count can be checked.
+/// Makes a grid without occupied cells; `occupied` stays empty. Allocates nothing, so that count()
+/// can be checked first.
 [[nodiscard]] RegionGrid make_region_grid(const std::array<std::uint32_t, 3>& extent_quanta,
                                           std::uint32_t cell_quanta);
 

@@ -34,7 +34,7 @@ std::vector<RecordId> sorted_records(std::vector<std::uint64_t> keys)
     return records;
 }
 
-/// Largest code among the fan before the split and all dependents, by record.
+/// Importance by record: the largest error code of its fan before the split, and of its dependents.
 std::vector<ErrorCode> importance_of(const DecodedModel& model)
 {
     std::vector<ErrorCode> importance(model.header().counts().records, 0);
@@ -113,17 +113,17 @@ std::optional<std::string> Replay::walk_fan(RecordId id, Ring& ring) const
         std::array<VertexId, 3> corners = face.corners;
         if (!is_active(id_of_face) || face.state != record.before[i])
         {
-            return fmt::format("record {}: face {} is not in the state that it expects", id.value,
+            return fmt::format("record {}: face {} is not in the expected state", id.value,
                                id_of_face.value);
         }
         if (!turn_to(corners, record.parent) || (i > 0 && corners[1] != ring[i]))
         {
-            return fmt::format("record {}: face {} is not the next one round vertex {}", id.value,
+            return fmt::format("record {}: face {} is not the next face round vertex {}", id.value,
                                id_of_face.value, record.parent.value);
         }
         if (model_.error_of(id_of_face, face.state) == 0)
         {
-            return fmt::format("record {}: face {} is called exact before it", id.value,
+            return fmt::format("record {}: face {} is marked exact before the record", id.value,
                                id_of_face.value);
         }
         ring[i] = corners[1];
@@ -132,7 +132,7 @@ std::optional<std::string> Replay::walk_fan(RecordId id, Ring& ring) const
     }
     if (record.depth != depth + 1)
     {
-        return fmt::format("record {}: states depth {} where it has {}", id.value, record.depth,
+        return fmt::format("record {}: states depth {}, but has depth {}", id.value, record.depth,
                            depth + 1);
     }
     return std::nullopt;

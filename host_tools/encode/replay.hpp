@@ -20,7 +20,7 @@ namespace tactus
 class Replay
 {
 public:
-    /// Starts at the base mesh. The model must outlive it.
+    /// Starts at the base mesh. The model must outlive the Replay.
     explicit Replay(const DecodedModel& model);
 
     /// Splits a record. Refused with a reason, and nothing changed, if its star is not the expected
@@ -48,7 +48,7 @@ private:
         std::array<VertexId, 3> corners{}; ///< Corners; none while the face is not active.
         FaceState state{};
     };
-    /// The vertices around v: w0 .. wk.
+    /// Vertices w0 .. wk around the vertex of a split, in canonical order of rt_core/spm/page.hpp.
     using Ring = std::array<VertexId, kMaxFanFaces + 1>;
 
     [[nodiscard]] std::optional<std::string> walk_fan(RecordId id, Ring& ring) const;
@@ -63,8 +63,8 @@ private:
 /// All records, each after its dependencies: by depth, then by number.
 [[nodiscard]] std::vector<RecordId> in_dependency_order(const DecodedModel& model);
 
-/// All records by importance: the largest bound of their fan before the split or of the fans of
-/// their dependents. Every prefix of the list can be split.
+/// All records, the most important first. The importance is the largest bound of the fan before the
+/// split, of the record and of all its dependents. Every prefix of the list can be split.
 [[nodiscard]] std::vector<RecordId> coarsest_first(const DecodedModel& model);
 
 } // namespace tactus

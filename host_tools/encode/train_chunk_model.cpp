@@ -29,7 +29,7 @@ struct BitCount
 };
 using Counts = std::vector<BitCount>;
 
-/// Counts the bits that a grammar writes, by probability.
+/// Coder that only counts the zeros and ones that a grammar writes, for each probability.
 class CountingCoder
 {
 public:

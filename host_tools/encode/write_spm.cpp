@@ -44,14 +44,15 @@ std::optional<std::string> check_base(const Simplification& simplification,
     const std::size_t vertices_needed = (base_vertices + 2) / 3;
     if (std::max(faces, vertices_needed) > kMaxBaseFaces)
     {
-        return fmt::format("the mesh can't be simplified below {} faces with {} vertices (too many "
-                           "pieces that can't vanish); a base mesh has at most {} faces with {}",
-                           faces, base_vertices, kMaxBaseFaces, kMaxBaseVertices);
+        return fmt::format(
+            "the mesh can't be simplified below {} faces with {} vertices (too many pieces that "
+            "can't be removed); a base mesh has at most {} faces with {}",
+            faces, base_vertices, kMaxBaseFaces, kMaxBaseVertices);
     }
     if (faces > std::max(kGrownBaseFaces, allowed_faces))
     {
         return fmt::format("the mesh can't be simplified below {0} faces (pieces or borders that "
-                           "can't vanish); allow it with --base-faces {0}",
+                           "can't be removed); allow that number with --base-faces {0}",
                            faces);
     }
     return std::nullopt;
@@ -67,7 +68,7 @@ std::optional<std::string> check_pieces(const ModelPieces& pieces)
     return std::nullopt;
 }
 
-/// Power of two of quanta for the user's region size.
+/// Edge of a region in quanta: the largest power of two that is not above the user's size.
 std::uint32_t cell_of(double region_size_m, double quantum_m)
 {
     const double quanta = std::clamp(region_size_m / quantum_m, 1.0, 0x1p30);
@@ -78,8 +79,8 @@ std::optional<std::string> check_regions(const RegionGrid& grid, double quantum_
 {
     if (grid.count() > kMaxRegions)
     {
-        return fmt::format("regions of {} m would be {} in number; at most {} are supported: give "
-                           "--region-size a larger value",
+        return fmt::format("regions of {} m would number {}; at most {} are supported: set "
+                           "--region-size to a larger value",
                            grid.cell_quanta * quantum_m, grid.count(), kMaxRegions);
     }
     return std::nullopt;
@@ -113,7 +114,7 @@ HeaderFields describe(const PreparedMesh& prepared, const Simplification& simpli
     return fields;
 }
 
-/// Sets the places of the file's parts, as far as counts alone determine them.
+/// Sets the offsets and sizes in `fields` that depend only on counts.
 void place_parts(HeaderFields& fields, const ModelCounts& counts, std::uint64_t regions)
 {
     const std::uint64_t header = header_bytes(counts.index_pages(), regions);
@@ -197,7 +198,7 @@ void code_chunks(const ModelPieces& pieces, std::uint32_t first,
         });
 }
 
-/// Writes chunks after a gap for header, base mesh and index pages, which is filled last.
+/// Writes a gap for header, base mesh and index pages, then the chunks; fills the gap last.
 Result<Done, Refusal> write_pieces(AtomicFile& file, HeaderFields& fields,
                                    const ModelPieces& pieces, const RegionGrid& grid,
                                    const EncodeOptions& options)

@@ -135,7 +135,7 @@ Point move_of(const Box& box, double scale, const PrepareOptions& options)
     return moved_m;
 }
 
-/// Sets the scale, the diagonal and the box's place.
+/// Sets scale, diagonal and origin of `out`; refuses values out of range.
 std::optional<Refusal> choose_scale(const Box& box, const PrepareOptions& options,
                                     PreparedMesh& out)
 {
@@ -152,12 +152,12 @@ std::optional<Refusal> choose_scale(const Box& box, const PrepareOptions& option
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         out.origin_m[axis] = box.low[axis] * scale + moved_m[axis];
-        // The translation must be finite in steps, too; a metre has less than 2^64.
+        // The translation must also be finite in steps; a metre has fewer than 2^64.
         if (!std::isfinite(out.origin_m[axis]) || !std::isfinite(box.extent(axis) * scale) ||
             !std::isfinite(std::ldexp(moved_m[axis], 64)))
         {
             return Refusal{
-                fmt::format("coordinates are not finite any more after scaling by {}", scale)};
+                fmt::format("coordinates are no longer finite after scaling by {}", scale)};
         }
     }
     if (options.is_centered)
@@ -173,24 +173,26 @@ std::optional<Refusal> choose_scale(const Box& box, const PrepareOptions& option
     }
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        const double far_m = out.origin_m[axis] + out.diagonal_m; // Beyond any grid position.
+        // Upper limit of all grid positions.
+        const double far_m = out.origin_m[axis] + out.diagonal_m;
         if (out.origin_m[axis] < -kModelReachMax_m || far_m > kModelReachMax_m)
         {
             return Refusal{fmt::format("the model lies at {} m on an axis; at most {} m from the "
-                                       "origin are supported: --center puts it there",
+                                       "origin are supported: --center moves the model there",
                                        out.origin_m[axis], kModelReachMax_m)};
         }
     }
     return std::nullopt;
 }
 
-/// Divisor of the step for stitching: a vertex nearer to an edge than this lies on it.
+/// Divisor of the step for stitching: a vertex nearer to an edge than step / kStepsOnEdge lies on
+/// the edge.
 constexpr double kStepsOnEdge = 16.0;
-/// Divisor of the step for joining border vertices: float or decimal sources may store the parts of
-/// a common border this far apart.
+/// Divisor of the step for joining border vertices: float or decimal sources may store the sides of
+/// a common border up to step / kStepsApart apart.
 constexpr double kStepsApart = 2.0;
 
-/// Least power of two whose multiples up to 2^bits - 1, less `kept`, cover the extent.
+/// Step of the grid: the least power of two of which 2^bits - 1 - kept steps cover the extent.
 double choose_quantum(double extent_m, unsigned bits, double kept)
 {
     const double steps = std::ldexp(1.0, static_cast<int>(bits)) - 1.0 - kept;
@@ -206,15 +208,14 @@ double choose_quantum(double extent_m, unsigned bits, double kept)
     return quantum;
 }
 
-/// Chooses the bits: the requested number, or more if the mesh needs a finer grid or the caller
-/// requires one.
+/// Chooses the bits: the requested number, or more if the mesh or the caller needs a finer grid.
 void choose_grid(const TriangleMesh& mesh, double extent_m, const PrepareOptions& options,
                  PreparedMesh& out)
 {
-    // If both ends of the mesh are rounded, it may need one more step.
+    // With a given grid place, both ends of the mesh are rounded, so it may need one more step.
     const double kept = options.grid_place_m ? 1.0 : 0.0;
     double wanted_m = options.quantum_max_m.value_or(std::numeric_limits<double>::infinity());
-    const char* why = "models that meet it have that grid";
+    const char* why = "adjacent models have that grid";
     if (options.adds_bits)
     {
         const detail::GridNeed need = detail::measure_grid_need(mesh);
@@ -222,8 +223,7 @@ void choose_grid(const TriangleMesh& mesh, double extent_m, const PrepareOptions
         if (for_mesh_m < wanted_m)
         {
             wanted_m = for_mesh_m;
-            why =
-                need.for_edges < need.for_relief ? "shorter edges need it" : "its relief needs it";
+            why = need.for_edges < need.for_relief ? "for its short edges" : "for its fine relief";
         }
     }
     const double usual_m = choose_quantum(extent_m, options.position_bits, kept);
@@ -238,7 +238,8 @@ void choose_grid(const TriangleMesh& mesh, double extent_m, const PrepareOptions
         out.notes.push_back(fmt::format(
             "{} bits a coordinate instead of {}, steps of {:.3g} m instead of {:.3g} m: {}{}",
             out.position_bits, options.position_bits, out.quantum_m, usual_m, why,
-            out.quantum_m > wanted_m ? fmt::format(", and steps of {:.3g} m", wanted_m) : ""));
+            out.quantum_m > wanted_m ? fmt::format("; steps of {:.3g} m would be needed", wanted_m)
+                                     : ""));
     }
 }
 
@@ -251,7 +252,7 @@ void put_on_grid(const TriangleMesh& mesh, const Box& box, const PrepareOptions&
 {
     const double scale = out.metres_per_unit;
     const Point moved_m = move_of(box, scale, options);
-    std::array<double, 3> first{}; // Origin in steps from the grid's place.
+    std::array<double, 3> first{}; // First grid position of the mesh, in steps from grid_place_m.
     const auto steps = [&](double value, std::size_t axis)
     {
         return options.grid_place_m
@@ -326,8 +327,8 @@ void write_notes(PreparedMesh& out)
     { note(count, "vertex", "vertices", what); };
     const auto note_pieces = [&](std::size_t count, std::string_view what)
     { note(count, "closed piece", "closed pieces", what); };
-    note_vertices(out.welded_vertices, "welded to one with the same position");
-    note_vertices(out.isolated_vertices, "dropped that no face uses");
+    note_vertices(out.welded_vertices, "welded to another with the same position");
+    note_vertices(out.isolated_vertices, "without a face dropped");
     note(out.degenerate_faces, "degenerate face", "degenerate faces",
          "dropped (two corners in one place)");
     note(out.duplicate_faces, "duplicate face", "duplicate faces", "dropped");
@@ -335,13 +336,12 @@ void write_notes(PreparedMesh& out)
          "cut open (more than two faces, or two with the same direction)");
     note_vertices(out.added_vertices, "added where several fans of faces met");
     note_vertices(out.joined_vertices,
-                  "of borders joined to one less than half a step of the grid away");
+                  "of borders joined to others less than half a grid step away");
     note(out.stitched_faces, "face", "faces", "added where a border vertex lies on another edge");
     note(out.flat_faces, "face", "faces", "kept without area on the grid");
-    note_pieces(out.turned_pieces,
-                "turned outwards that looked inwards; --keep-winding leaves that");
-    note_pieces(out.turned_voids, "turned inwards, as a void of the closed piece around it; "
-                                  "--keep-winding leaves that");
+    note_pieces(out.turned_pieces, "turned from inwards to outwards; --keep-winding prevents this");
+    note_pieces(out.turned_voids,
+                "turned inwards, as a void in a closed piece; --keep-winding prevents this");
 }
 
 /// Joins the sides of seams that the source has rounded differently.
@@ -372,7 +372,7 @@ void close_seams(TriangleMesh& mesh, const PrepareOptions& options, PreparedMesh
     }
 }
 
-/// A mesh with its scale and grid, and its box, both in the source's unit.
+/// A cleaned mesh and its box, both in the source's unit.
 struct PlannedMesh
 {
     TriangleMesh mesh;

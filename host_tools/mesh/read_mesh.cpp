@@ -23,7 +23,7 @@ namespace tactus
 namespace
 {
 
-/// Indices are 32-bit; the largest value is reserved for "none".
+/// Maximum number of vertices: indices have 32 bits, and the largest value means "none".
 constexpr std::size_t kMaxVertices = 0xFFFF'FFFE;
 using Reader = Result<MeshFile, Refusal> (*)(std::string_view);
 
@@ -147,7 +147,7 @@ bool is_mesh_file_name(const std::filesystem::path& path)
 
 std::string mesh_is_no_model(const std::string& path)
 {
-    return fmt::format("'{0}' is a mesh; spm_build {0} -o MODEL.spm makes a model of it",
+    return fmt::format("'{0}' is a mesh; build a model with: spm_build {0} -o MODEL.spm",
                        printable(path));
 }
 

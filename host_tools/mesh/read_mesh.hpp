@@ -17,7 +17,7 @@
 namespace tactus
 {
 
-/// Maximum number of faces: each costs one FaceId, and half of those a record id.
+/// Maximum number of faces of a mesh file, 2^29.
 inline constexpr std::size_t kMaxFaces = std::size_t{1} << 29U;
 
 /// Formats that can be read.
@@ -29,9 +29,9 @@ enum class MeshFormat
     off,
 };
 
-/// Name of a format, "ply" and the like, as files end and --format takes it.
+/// Name of a format, as in file extensions and --format: "ply", "obj", "stl" or "off".
 [[nodiscard]] std::string_view format_name(MeshFormat format);
-/// Format of a name, in either case of letters.
+/// Format of a name, in either case of letters; none for other names.
 [[nodiscard]] std::optional<MeshFormat> mesh_format(std::string_view name);
 
 /// Content of a mesh file, with notes on changed or unreadable parts.

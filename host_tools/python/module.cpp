@@ -22,13 +22,13 @@ namespace py = pybind11;
 namespace
 {
 
-/// A refusal of the library; tactus.Error in Python.
+/// Exception for a fault of a call; tactus.Error in Python.
 struct TactusError : std::runtime_error
 {
     using std::runtime_error::runtime_error;
 };
 
-/// Calls a function of tactus.h; a fault's line becomes an exception.
+/// Calls a function of tactus.h; throws a TactusError with the line of a fault.
 template <typename Call>
 void check(Call&& call)
 {
@@ -314,8 +314,9 @@ public:
               { return tactus_frame_begins_inside(frame_, positions_m, inside.data(), error); });
         for (std::size_t tool = 0; tool < inside.size(); ++tool)
         {
-            const std::string text = "tool " + std::to_string(tool) +
-                                     " begins inside a closed object, which holds it from within";
+            const std::string text =
+                "tool " + std::to_string(tool) +
+                " begins inside a closed object, whose surface keeps it inside";
             if (inside[tool] != 0 && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0)
             {
                 throw py::error_already_set(); // Warnings may be errors.
@@ -484,7 +485,7 @@ True
 (5000, True, 32)
 )")
         .def(py::init<const std::string&>(), "path"_a,
-             "Opens an .spm file; raises Error if it is refused.")
+             "Opens an .spm file; raises Error if the file is refused.")
         .def_static(
             "find",
             [](const std::string& name, std::uint32_t domain, double wait_s)
@@ -516,7 +517,7 @@ True
 )")
         .def(py::init<const std::string&>(), "path"_a)
         .def("distances", &StaticModel::distances, "points_m"_a,
-             "Distances from N x 3 points, in the source's frame, to the surface.");
+             "Distances of N x 3 points to the surface; points are in the source mesh's frame.");
 
     py::class_<tactus_tool>(module, "Tool", R"(A tool: all points within radius_m of its core.
 The radius is 1e-6 to 1 m, up to 1000 m for a query-only tool (query_only).
@@ -531,7 +532,7 @@ The radius is 1e-6 to 1 m, up to 1000 m for a query-only tool (query_only).
              "shading_m"_a = 0.0);
 
     py::class_<tactus_object>(module, "Object", R"(A model with a pose in the world.
-Scale 0.001 to 1000, within 10,000 m; friction 0 to 3, the dynamic one at most the static one.
+Scale 0.001 to 1000, translation within 10,000 m; friction 0 to 3, dynamic at most static.
 
 >>> cup = tactus.Object(translation_m=[0.1, 0, 0], static_friction=0.4, dynamic_friction=0.3)
 )")
@@ -550,7 +551,7 @@ Scale 0.001 to 1000, within 10,000 m; friction 0 to 3, the dynamic one at most t
         .def_readonly("kind", &Answers::kind)
         .def_readonly("nearest_m", &Answers::nearest_m);
 
-    py::class_<Frame>(module, "Frame", R"(Tools and objects, in memory that never grows.
+    py::class_<Frame>(module, "Frame", R"(Tools and objects, in memory of a fixed size.
 
 >>> frame = tactus.Frame([tactus.Model("torus.spm")], [tactus.Tool(0.002)], [tactus.Object()],
 ...                      memory_mib=32, loads_whole=True)
@@ -566,8 +567,9 @@ Scale 0.001 to 1000, within 10,000 m; friction 0 to 3, the dynamic one at most t
              "models"_a, "tools"_a, "objects"_a, py::kw_only(), "memory_mib"_a = 16.0,
              "period_s"_a = 1e-3, "loads_whole"_a = false, "object_speed_max_m_per_s"_a = 0.5)
         .def("run", &Frame::run, "positions_m"_a, "rotations"_a = py::none(), "rounds"_a = 0,
-             "Moves the tools through N poses, one frame each; with `rounds` up to that many, with "
-             "loading between, until the answers are exact, within tolerance or separated.")
+             "Moves the tools through N poses, one frame each. With `rounds`, each pose has up to "
+             "that many frames, with loading in between, until all answers are exact, within "
+             "tolerance or separated.")
         .def("load", &Frame::load, "Runs one round of loading.")
         .def("place", &Frame::place, "object"_a, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0,

@@ -12,7 +12,8 @@ namespace tactus
 namespace
 {
 
-/// Distance in steps, along each axis, below which vertices are one in their files.
+/// Distance, in steps along each axis, below which vertices of different files count as the same
+/// vertex.
 constexpr double kApart = 0.5;
 
 std::uint64_t cell_of(const Vec3& steps)
@@ -34,7 +35,8 @@ Vec3 rounded(const Vec3& steps)
 
 } // namespace
 
-/// Number of the first vertex near a place, or the number of vertices if none is near.
+/// Index of the first vertex less than kApart from `steps`, or the number of vertices if there is
+/// none.
 std::size_t CommonPlaces::first_near(const Vec3& steps) const
 {
     std::size_t first = vertices_.size();

@@ -10,7 +10,8 @@ namespace tactus
 namespace
 {
 
-constexpr std::size_t kNamed = 3; ///< More names would hide the reason.
+/// Number of parts named in a line; more names would hide the reason.
+constexpr std::size_t kNamed = 3;
 
 } // namespace
 

@@ -10,7 +10,8 @@
 namespace tactus
 {
 
-/// Ignored parts of a scene, for notes: one line for each reason, with the names of the parts.
+/// Collects ignored parts of a scene for notes: one line for each reason, with the names of the
+/// first three parts.
 class LeftOut
 {
 public:
@@ -22,7 +23,7 @@ public:
 private:
     struct Things
     {
-        std::string named; ///< Names of the first parts.
+        std::string named; ///< Names of the first three parts.
         std::size_t count{0};
     };
     std::map<std::string, Things> by_reason_;

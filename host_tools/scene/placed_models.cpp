@@ -21,7 +21,8 @@ nlohmann::ordered_json material_json(const Material& material)
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     for (const MaterialKey& key : kMaterialKeys)
     {
-        // A missing dynamic friction would be read as the static one.
+        // Dynamic friction is written whenever there is static friction: if missing, it is read as
+        // equal to the static one.
         const bool is_said = key.value == &Material::dynamic_friction
                                  ? material.static_friction != 0.0
                                  : material.*key.value != Material{}.*key.value;
@@ -68,8 +69,8 @@ Result<PlacedModels, Refusal> read_placed_models(const std::filesystem::path& pa
         }
         if (object.model.empty())
         {
-            return Refusal{fmt::format("{0}: {1} names no model in extras.tactus; spm_build {0} -o "
-                                       "FOLDER makes models of a scene's meshes",
+            return Refusal{fmt::format("{0}: {1} names no model in extras.tactus; build models "
+                                       "from the scene's meshes with: spm_build {0} -o FOLDER",
                                        path.string(), object.place)};
         }
         const auto [model, is_new] = known.try_emplace(object.model, placed.files.size());

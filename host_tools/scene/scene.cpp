@@ -21,7 +21,7 @@ namespace tactus
 namespace
 {
 
-/// Result of `read`, or its SceneFault as a refusal after the file's name.
+/// Result of `read`. A SceneFault becomes a refusal that begins with the file's name.
 template <typename Read>
 auto refusing(const std::filesystem::path& path, const Read& read)
     -> Result<decltype(read()), Refusal>
@@ -48,7 +48,7 @@ void mirror(TriangleMesh& mesh)
     }
     for (auto& face : mesh.faces)
     {
-        std::swap(face[1], face[2]); // Mirroring must keep the outside.
+        std::swap(face[1], face[2]); // Reversed, so that faces keep their outside.
     }
 }
 
@@ -91,9 +91,10 @@ Result<Scene, Refusal> Scene::open(const std::filesystem::path& path)
             if (std::ranges::none_of(scene.objects_, &SceneObject::is_touched))
             {
                 throw detail::SceneFault{
-                    !scene.objects_.empty() ? "every object says that it isn't touched"
-                    : scene.notes_.empty()  ? "its scene has no node with a mesh or a model"
-                                            : "nothing is left to touch: " + scene.notes_.front()};
+                    !scene.objects_.empty()
+                        ? "every object is excluded by extras.tactus.touch = false"
+                    : scene.notes_.empty() ? "its scene has no node with a mesh or a model"
+                                           : "no object is left to touch: " + scene.notes_.front()};
             }
             std::ranges::copy(scene.reader_->file.notes(), std::back_inserter(scene.notes_));
             return scene;

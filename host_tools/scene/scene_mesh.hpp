@@ -12,8 +12,8 @@ namespace tactus
 /// A mesh of a scene file.
 struct SceneMesh
 {
-    TriangleMesh mesh; ///< Mesh; no faces: no part of it has a surface.
-    /// Parts without a surface, such as "2 primitives of LINES"; empty: none.
+    TriangleMesh mesh; ///< Mesh; without faces if no part has a surface.
+    /// Parts without a surface, such as "2 primitives of LINES"; empty if there are none.
     std::string left_out;
 };
 

@@ -26,13 +26,14 @@ struct MeshUse
 /// A node of a scene file that is an object.
 struct SceneObject
 {
-    std::string name;            ///< Name; valid and unique.
-    std::string place;           ///< Description of the node for messages: node 'Arm' (nodes[3]).
-    std::string model;           ///< Name of an .spm beside the scene file; empty: none.
+    std::string name;  ///< Name; valid (is_valid_name) and unique in the scene.
+    std::string place; ///< Description of the node for messages: node 'Arm' (nodes[3]).
+    std::string model; ///< Name of an .spm file beside the scene file; empty if none is named.
     std::optional<MeshUse> mesh; ///< Mesh; none if a model is named instead.
     Pose pose;                   ///< Pose in the world, in metres; one that checked_pose() accepts.
     Material material;
-    /// False if tools pass through the object; the rest may then be unfit for touch.
+    /// False if tools pass through the object; its other members may then be invalid for a touched
+    /// object.
     bool is_touched{true};
 };
 

@@ -19,11 +19,12 @@ namespace tactus
 namespace
 {
 
-/// Share of an object's size within which places are equal; ten times the rounding of floats.
+/// Distance within which places are equal, as a share of the object's size: ten times the rounding
+/// of floats.
 constexpr double kSamePlace = 1e-6;
 constexpr double kSameTurn = 1e-9;
 constexpr std::size_t kLeastCommon = 2;
-/// Number of others with which a model is compared in one corner.
+/// Maximum number of other models with which a model is compared at one corner.
 constexpr std::size_t kPairsOfEach = 16;
 
 std::uint64_t mixed(std::uint64_t hash, std::int64_t value)
@@ -53,7 +54,7 @@ void SharedGrids::add(std::size_t model, const Pose& pose, const TriangleMesh& m
     {
         return;
     }
-    // A power of 16, so that objects of similar size have the same one.
+    // The step is a power of 16, so that objects of similar size have equal steps.
     const int exponent = 4 * static_cast<int>(std::floor(std::ilogb(kSamePlace * size_m) / 4.0));
     const double step_m = std::ldexp(1.0, exponent + 4);
     const Eigen::Matrix3d rotation = Eigen::Quaterniond(pose.rotation.data()).toRotationMatrix();
@@ -64,7 +65,8 @@ void SharedGrids::add(std::size_t model, const Pose& pose, const TriangleMesh& m
     {
         turn = mixed(turn, in_steps(entry, kSameTurn));
     }
-    // Neighbours may be 16 times as large, and a little more.
+    // Corners are added with two steps, so that they meet those of neighbours up to 16 times as
+    // large.
     for (const double coarser : {1.0, 16.0})
     {
         const int step_log2 = std::ilogb(step_m * coarser);
@@ -120,7 +122,7 @@ std::vector<std::size_t> SharedGrids::first_of_each()
         }
         return model;
     };
-    // The key contains the step: one common corner counts for small and large steps.
+    // Number of common corners by two models and step: a common corner may occur with both steps.
     std::map<std::array<std::int64_t, 3>, std::size_t> common;
     const auto meet = [&](const Corner& one, const Corner& other)
     {

@@ -24,25 +24,28 @@ class SharedGrids
     {
         std::uint64_t place{0}; ///< Hash of the place in the world, the rotation and the scale.
         std::uint32_t model{0};
-        std::int32_t step_log2{0}; ///< Places within 2 to this power metres are equal.
+        /// Places are rounded to steps of 2^step_log2 metres; places with the same rounding are
+        /// equal.
+        std::int32_t step_log2{0};
 
         friend auto operator<=>(const Corner&, const Corner&) = default;
     };
 
 public:
-    /// Maximum number of corners; beyond it those with the lowest hashes are kept, independent of
-    /// the model.
+    /// Maximum number of corners. Above it, those with the lowest hashes are kept; a hash does not
+    /// depend on the model.
     static constexpr std::size_t kCornersMax = std::size_t{1} << 23U;
     static constexpr std::size_t kCornerBytes = sizeof(Corner);
 
     explicit SharedGrids(std::size_t models, std::size_t corners_max = kCornersMax);
 
-    /// Adds an object that shows the model, whose mesh this is. Linear in its vertices.
+    /// Adds an object that shows the model; `mesh` is the mesh of that model. Linear in its
+    /// vertices.
     void add(std::size_t model, const Pose& pose, const TriangleMesh& mesh);
 
-    /// First model that each model meets, directly or through others; itself if it meets none. Two
-    /// models meet if at least two of their vertices coincide and their objects have the same
-    /// rotation and scale; otherwise no grid fits both.
+    /// First model of each model's group, by model: the models that it meets directly or through
+    /// others, and itself. Two models meet if at least two of their vertices coincide and their
+    /// objects have the same rotation and scale; otherwise no grid fits both.
     [[nodiscard]] std::vector<std::size_t> first_of_each();
 
 private:
@@ -52,7 +55,7 @@ private:
     std::size_t models_;
     std::size_t corners_max_;
     std::vector<Corner> corners_;
-    std::uint64_t kept_{~std::uint64_t{0}}; ///< Upper limit of the hashes of kept corners.
+    std::uint64_t kept_{~std::uint64_t{0}}; ///< Greatest hash of corners that are kept.
 };
 
 /// Place of the world's origin in an object's frame: grids through it are one grid in the world for

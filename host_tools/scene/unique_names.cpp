@@ -30,7 +30,8 @@ std::string plain_name(std::string_view given)
 std::vector<std::string> unique_names(std::span<const std::string> names)
 {
     std::set<std::string, std::less<>> taken(names.begin(), names.end());
-    std::map<std::string, std::size_t, std::less<>> last_number; // Last number by name.
+    // Last number appended to each name.
+    std::map<std::string, std::size_t, std::less<>> last_number;
     std::vector<std::string> result;
     for (const std::string& name : names)
     {

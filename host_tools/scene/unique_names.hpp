@@ -15,8 +15,8 @@ namespace tactus
 [[nodiscard]] std::string plain_name(std::string_view given);
 
 /// Makes names unique, in their order: the first of equal ones keeps the name, each further one
-/// gets "-2", "-3" and so on, the first that is unused. Names are valid (is_valid_name), and so are
-/// the results. n log n.
+/// gets "-2", "-3" and so on, the first that is unused. `names` must be valid (is_valid_name), and
+/// so are the results. n log n.
 [[nodiscard]] std::vector<std::string> unique_names(std::span<const std::string> names);
 
 } // namespace tactus

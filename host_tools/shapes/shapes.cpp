@@ -42,7 +42,7 @@ double fraction(std::uint32_t part, std::uint32_t whole)
     return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Parts of an icosahedron edge for which 20 n^2 is nearest to `faces`.
+/// Number n of parts of an icosahedron edge for which 20 n^2 is nearest to `faces`.
 std::uint32_t choose_subdivision(std::uint32_t faces)
 {
     std::uint32_t n = 1;
@@ -60,8 +60,9 @@ struct Cells
     std::uint32_t rows;
 };
 
-/// Grid of columns x rows whose cell count is nearest to `cells`, with a ratio within 2 of the
-/// requested one; of equally near ones that with the nearest ratio.
+/// Grid of columns x rows whose cell count is nearest to `cells`, with at most twice or half the
+/// requested ratio. Between equally near counts the columns nearest to the requested ratio are
+/// chosen.
 Cells choose_cells(std::uint32_t cells, double columns_per_row, Cells least)
 {
     const double ideal = std::sqrt(static_cast<double>(cells) * columns_per_row);
@@ -188,12 +189,13 @@ TriangleMesh make_terrain(std::uint32_t faces)
 }
 
 constexpr std::uint32_t kTeeth = 8;
-constexpr std::uint32_t kProfileEdges = 4 * kTeeth; ///< Root, flank, tip, flank.
+/// Number of edges of the outline: root, flank, tip and flank of each tooth.
+constexpr std::uint32_t kProfileEdges = 4 * kTeeth;
 
-/// Corner of the gear's outline, counter-clockwise.
+/// Position of a corner of the gear's outline; corners are numbered counter-clockwise.
 Point outline_corner(std::uint32_t corner)
 {
-    // Places within one tooth's pitch.
+    // Angles of a tooth's corners, as parts of its pitch.
     static constexpr std::array<double, 4> kPlace{0.0, 0.4, 0.5, 0.9};
     const double radius_m = corner % 4 < 2 ? 0.04 : 0.05;
     const double turn = (static_cast<double>(corner / 4 % kTeeth) + kPlace[corner % 4]) / kTeeth;
@@ -201,8 +203,8 @@ Point outline_corner(std::uint32_t corner)
             0.0};
 }
 
-/// Adds a cut through the gear's rim at `outside`, a point of the outline: up the outer wall,
-/// inward over the top, down the bore, back outward below.
+/// Adds the vertices of a section through the gear's rim at `outside`, a point of the outline: up
+/// the outer wall, inward over the top, down the bore, back outward below.
 void add_gear_column(const Point& outside, std::uint32_t wall, std::uint32_t top,
                      TriangleMesh& mesh)
 {
@@ -234,7 +236,7 @@ void add_gear_column(const Point& outside, std::uint32_t wall, std::uint32_t top
 
 TriangleMesh make_gear(std::uint32_t faces)
 {
-    // One piece of every outline edge times one ring on both sides of the gear is 4 faces an edge.
+    // With one piece of each outline edge and one ring on both sides, the gear has 4 faces an edge.
     const std::uint32_t units = (faces + 2 * kProfileEdges) / (4 * kProfileEdges);
     const auto [pieces, rings] = choose_cells(units, 0.3, {1, 2});
     const std::uint32_t wall = std::max(1U, 2 * rings / 5);
@@ -273,7 +275,7 @@ TriangleMesh make_turned(std::uint32_t faces, std::span<const detail::OutlinePoi
     return detail::make_turned(outline, segments, rings);
 }
 
-/// Plate with the cells a side for which 4 c (c + 2) is nearest to `faces`.
+/// Plate of c x c cells a side, with the c for which 4 c (c + 2) is nearest to `faces`.
 TriangleMesh make_plate(std::uint32_t faces)
 {
     constexpr double kThickness_m = 0.01;

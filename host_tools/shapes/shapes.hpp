@@ -21,12 +21,12 @@ namespace tactus
 enum class Shape
 {
     sphere,       ///< Subdivided icosahedron of radius 50 mm.
-    bumpy_sphere, ///< The same, projected onto f = 0, see bumpy_radius_m().
+    bumpy_sphere, ///< Subdivided icosahedron on the surface of bumpy_radius_m().
     torus,        ///< Radii 50 and 20 mm around the z axis.
     terrain,      ///< Height field of 100 x 100 mm over z = 0, up along z, with a border.
     gear,         ///< Eight teeth, 50 mm outer radius, 20 mm thick, a bore; sharp edges.
     peg,          ///< Pin of 10 mm radius, 60 mm long along z, edges chamfered by 1 mm.
-    socket,       ///< Block of 30 mm radius with a blind hole of 10.2 mm, 40 mm deep from above.
+    socket,       ///< Block of 30 mm radius; blind hole from above: 10.2 mm radius, 40 mm deep.
     plate,        ///< 100 x 100 x 10 mm over z = 0, both sides cut into squares.
 };
 
@@ -47,9 +47,9 @@ inline constexpr std::uint32_t kMaxShapeFaces = 16'000'000;
 /// zero of f(x) = |x| - R (1 + a sin(m u) sin(m v) sin(m w)), where R = 50 mm, a = 0.02, m = 8.
 [[nodiscard]] double bumpy_radius_m(double u, double v, double w);
 
-/// Sphere of 50 mm with poles of valence `segments`; 2 x segments x (rings - 1) faces. Few rings
-/// and many segments give needles. Refused with fewer than 2 rings, fewer than 3 segments, or more
-/// than kMaxShapeFaces faces.
+/// Sphere of 50 mm radius with poles of valence `segments`; 2 x segments x (rings - 1) faces. Few
+/// rings and many segments give needles. Refused with fewer than 2 rings, fewer than 3 segments, or
+/// more than kMaxShapeFaces faces.
 [[nodiscard]] Result<TriangleMesh, Refusal> make_uv_sphere(std::uint32_t rings,
                                                            std::uint32_t segments);
 

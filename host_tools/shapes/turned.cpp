@@ -23,7 +23,8 @@ double length_of(const OutlinePoint& a, const OutlinePoint& b)
     return std::sqrt(out * out + up * up);
 }
 
-/// Outline cut into `pieces` pieces; each cut divides the edge with the longest pieces.
+/// Corners of the outline after cutting it into `pieces` pieces. Each cut goes to the edge with the
+/// longest pieces, which stay equal.
 std::vector<OutlinePoint> cut(std::span<const OutlinePoint> outline, std::uint32_t pieces)
 {
     const std::size_t edges = outline.size() - 1;

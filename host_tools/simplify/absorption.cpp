@@ -19,14 +19,15 @@ namespace
 {
 
 constexpr std::uint32_t kAbsent = Collapse::kNoFace;
-/// Maximum number of places for each component, since the nearest may be taken.
+/// Maximum number of places kept for each component: another absorption may use the nearest one.
 constexpr std::size_t kPlacesMax = 4;
 constexpr std::size_t kPartBlock = 256;
-/// Weight of the tip. If it were larger, flat plates would be coarse before small parts on them
-/// vanish; if smaller, a distant small part would early leave a spike.
+/// Weight of the tip in the cost of a place, see place_at(). If it were larger, flat plates would
+/// be coarse before small parts on them vanish; if smaller, a distant small part would early leave
+/// a spike.
 constexpr double kTipWeight = 1e-3;
 
-/// A component of one face, of two back to back, or a tetrahedron.
+/// A component that cannot shrink: one face, two faces back to back, or a tetrahedron.
 struct StuckPart
 {
     StaticVector<std::uint32_t, 4> faces;
@@ -38,7 +39,7 @@ struct StuckPart
     }
 };
 
-/// Possible target of a part.
+/// Possible absorption of a part: x is moved onto d, see Absorption.
 struct Place
 {
     double cost{0};
@@ -47,13 +48,13 @@ struct Place
     std::uint32_t d{0}; ///< Vertex of the part.
 };
 
-/// Cheapest first; a total order.
+/// Total order of places, cheapest first.
 bool is_before(const Place& a, const Place& b) noexcept
 {
     return std::tie(a.cost, a.part, a.x, a.d) < std::tie(b.cost, b.part, b.x, b.d);
 }
 
-/// The part whose first face is `face`.
+/// Stuck part whose lowest face is `face`; none if the component can shrink.
 std::optional<StuckPart> stuck_part_of(const CollapseMesh& current, std::uint32_t face)
 {
     StuckPart part;
@@ -79,7 +80,7 @@ std::optional<StuckPart> stuck_part_of(const CollapseMesh& current, std::uint32_
         for (std::uint32_t edge = 0; edge < 3; ++edge)
         {
             const std::uint32_t other = current.neighbour(mine, edge);
-            // A single triangle has three borders, all others none.
+            // A single triangle has three borders; two faces and a tetrahedron have none.
             if (part.faces.size() == 1 ? other != kAbsent : !is_mine(other))
             {
                 return std::nullopt;
@@ -128,9 +129,9 @@ double area_of(const QuantisedMesh& mesh, const CollapseMesh& current, const Stu
     return area;
 }
 
-/// Place at which x can take d's part. x must not be of the part, and for two faces its edge needs
-/// two. The cost is area times squared distance of the part, as for a candidate, and a term for the
-/// tip in x's ring, which the next collapses flatten.
+/// Place at which d's part can be absorbed by x. None if x is a vertex of the part, or on a border
+/// while the part has more than one face. The cost is area times squared distance, as for a
+/// candidate, plus a term for the tip that d forms in x's ring.
 std::optional<Place> place_at(const QuantisedMesh& mesh, const CollapseMesh& current,
                               const StuckPart& part, std::uint32_t x, std::uint32_t d)
 {
@@ -146,7 +147,7 @@ std::optional<Place> place_at(const QuantisedMesh& mesh, const CollapseMesh& cur
 
 using PartPlaces = StaticVector<Place, kPlacesMax>;
 
-/// The cheapest places.
+/// The cheapest places of a part, at most kPlacesMax, cheapest first.
 PartPlaces places_of(const QuantisedMesh& mesh, const CollapseMesh& current,
                      const VertexSearch& search, const std::vector<StuckPart>& parts,
                      std::size_t part)
@@ -202,7 +203,7 @@ std::vector<Place> find_places(const QuantisedMesh& mesh, const CollapseMesh& cu
     return places;
 }
 
-/// Place of y, the edge's other vertex, in the ring of x. On a border only the first one gives a
+/// Index of y in the ring of x: the neighbour nearest to s. On a border only index 0 gives a
 /// manifold edge.
 std::uint32_t place_of_y(const QuantisedMesh& mesh, const VertexRing& ring, std::uint32_t s)
 {
@@ -218,7 +219,7 @@ std::uint32_t place_of_y(const QuantisedMesh& mesh, const VertexRing& ring, std:
     return best;
 }
 
-/// Collapse of a tetrahedron's first vertex: the farthest from x, except d.
+/// First step for a tetrahedron: the vertex farthest from x, except d, collapses onto d.
 Star flatten(const QuantisedMesh& mesh, const CollapseMesh& current, const StuckPart& part,
              const Place& place)
 {

@@ -13,41 +13,42 @@
 namespace tactus
 {
 
-/// Absorption of a component that cannot shrink further, a triangle or a tetrahedron, into the edge
-/// (x, y) of another one: a tetrahedron becomes two faces back to back, two of its three vertices
-/// move onto x and y by pair contraction, and then x moves onto the third, d, which takes the faces
-/// with it:
+/// Absorption of a component that cannot shrink further into an edge (x, y) of another component.
+/// The component is one face, two faces back to back, or a tetrahedron, which first becomes two
+/// faces back to back. Its vertices t and s move onto x and y by pair contraction. Then x moves
+/// onto the remaining vertex d, which takes over the faces of x:
 ///
 ///          d                     d
 ///         / \                  / |                  the ring
 ///        s---t      ->        y--x         ->     y--d  round x
 ///        y---x  (another)                           is round d
 ///
-/// Each step is a collapse of the common form, and afterwards the rest is manifold as before. In
-/// between the component is attached to the edge. d is its vertex nearest to x.
+/// Each step has the form of a Collapse. The mesh is manifold before the first step and after the
+/// last. d is the component's vertex nearest to x.
 struct Absorption
 {
     static constexpr std::size_t kStepsMax = 4;
 
     StaticVector<Star, kStepsMax>
-        steps; ///< Steps; the last one is x -> d, and a tetrahedron's first is extra.
+        steps; ///< Steps in order: the flattening (tetrahedron only), t -> x, s -> y, x -> d.
 };
 
 struct AbsorptionPlan
 {
-    std::vector<Absorption> absorptions; ///< Absorptions without a common face, cheapest first.
-    /// Cost of the cheapest one that was not chosen, in quanta^4.
+    std::vector<Absorption> absorptions; ///< Absorptions that share no face, cheapest first.
+    /// Cost, in quanta^4, of the absorption at which the choice ended; infinite if all were
+    /// considered.
     double cost_left{std::numeric_limits<double>::infinity()};
 };
 
-/// Plans absorptions up to a cost, which is comparable with a Candidate's, until together they
-/// remove `faces_wanted` faces. Reads the present mesh. The same for any number of threads. Costs a
-/// search tree over the vertices.
+/// Chooses absorptions that cost at most `cost_max`, in quanta^4 as for a Candidate, until together
+/// they remove `faces_wanted` faces. `current` is only read. The result does not depend on
+/// `threads`. Builds a search tree over the vertices.
 [[nodiscard]] AbsorptionPlan plan_absorptions(const QuantisedMesh& mesh,
                                               const CollapseMesh& current, std::size_t faces_wanted,
                                               double cost_max, unsigned threads);
 
-/// Number of faces in components that cannot shrink further.
+/// Number of present faces in components that cannot shrink further: see Absorption.
 [[nodiscard]] std::size_t count_stuck_faces(const CollapseMesh& current);
 
 [[nodiscard]] std::size_t count_components(const CollapseMesh& current);

@@ -13,10 +13,10 @@
 namespace tactus
 {
 
-/// Keeps borders in place. Each border edge defines a plane through itself, perpendicular to its
-/// face, and a border vertex pays for its distance to the planes that it has collected. Unlike the
-/// faces' quadric this one accumulates, since a removed border edge leaves no other trace; without
-/// it holes close. Only border vertices take memory.
+/// Costs that keep borders in place. Each border edge defines a plane through itself, perpendicular
+/// to its face, and the cost of a border vertex grows with its distance to its collected planes.
+/// Unlike PlaneQuadric, these costs accumulate, since a removed border edge leaves no other trace.
+/// Without them holes close. Only border vertices take memory.
 class BoundaryQuadrics
 {
 public:
@@ -31,7 +31,7 @@ public:
     /// Replaces the parent's planes by the vertex's, as in an Absorption.
     void replace(std::uint32_t vertex, std::uint32_t parent) noexcept;
 
-    /// Removes the planes of a vertex whose hole has closed: it is an inner vertex now.
+    /// Removes the planes of a vertex that became an inner vertex when its hole closed.
     void release(std::uint32_t vertex) noexcept { slot_plus_one_[vertex] = 0; }
 
 private:
@@ -40,8 +40,9 @@ private:
 
     void add_plane(std::uint32_t vertex, const Quadric& plane);
 
-    Vec3 origin_; ///< Near the mesh's middle, which reduces cancellation in the matrix.
-    /// Slot by vertex, plus one; 0 for inner vertices, empty without borders.
+    Vec3 origin_; ///< Origin of the quadrics, near the mesh's middle to reduce cancellation.
+    /// Index into `quadrics_`, plus one, by vertex; 0 for inner vertices; empty if the mesh has no
+    /// border.
     std::vector<std::uint32_t> slot_plus_one_;
     std::vector<Quadric> quadrics_;
 };

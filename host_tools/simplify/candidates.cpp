@@ -16,12 +16,13 @@ namespace tactus
 namespace
 {
 
-/// Factor of |uv|^4: decides between equal costs, mainly on flat regions.
+/// Factor of the fourth power of the collapsed edge's length. This cost decides between equal
+/// costs, mainly on flat regions.
 constexpr double kLengthWeight = 1e-6;
-/// Share of the quadric in the measured cost: prevents bridges between sheets that the samples
-/// miss.
+/// Share of the quadric in the measured cost. The quadric prevents bridges between sheets that the
+/// samples miss.
 constexpr double kQuadricShare = 0.1;
-/// Maximum number of measured neighbours; more give no gain.
+/// Maximum number of neighbours whose error is measured; more give no gain.
 constexpr std::size_t kMeasuredMax = 6;
 
 struct Choice
@@ -36,7 +37,8 @@ struct Choice
 
 using Choices = StaticVector<Choice, kMaxStarFaces>;
 
-/// All neighbours, cheapest first; equal costs stay in ring order.
+/// All collapses of the vertex, cheapest first by quadric, boundary and length; equal costs stay in
+/// ring order.
 Choices rank_neighbours(const CandidateInput& input, const VertexRing& ring)
 {
     const PlaneQuadric quadric(input.mesh, ring);

@@ -23,11 +23,12 @@ struct Candidate
 
     double cost{0}; ///< Cost in quanta^4.
     std::uint32_t vertex{0};
-    std::uint32_t parent{kNone}; ///< Parent; kNone if no collapse is legal.
+    /// Vertex onto which `vertex` moves; kNone if no collapse is legal.
+    std::uint32_t parent{kNone};
     Spoils spoils{Spoils::nothing};
 };
 
-/// Best first; a total order, since a vertex has one candidate.
+/// Orders candidates, best first. The order is total, since each vertex has one candidate.
 [[nodiscard]] inline bool operator<(const Candidate& a, const Candidate& b) noexcept
 {
     return std::tie(a.spoils, a.cost, a.vertex) < std::tie(b.spoils, b.cost, b.vertex);
@@ -41,7 +42,7 @@ struct CandidateScratch
     std::vector<double> squared;
 };
 
-/// Ranking of candidates.
+/// Rule that chooses a vertex's parent among its neighbours.
 enum class Priority : std::uint8_t
 {
     quadric,  ///< The cheapest legal neighbour.
@@ -54,12 +55,12 @@ struct CandidateInput
     const QuantisedMesh& mesh;
     const CollapseMesh& current;
     const BoundaryQuadrics& boundary;
-    const SurfaceSamples& samples; ///< Samples, read when errors are measured.
+    const SurfaceSamples& samples; ///< Surface samples; read only with Priority::measured.
     Priority priority{Priority::quadric};
 };
 
-/// The vertex's best collapse: of the least spoiling level, then by cost, ties to the neighbour
-/// that comes first around the vertex.
+/// Finds the vertex's best legal collapse: the lowest Spoils level, then the least cost. Between
+/// equal costs the first neighbour in the vertex's ring is chosen.
 [[nodiscard]] Candidate find_candidate(const CandidateInput& input, std::uint32_t vertex,
                                        CandidateScratch& scratch);
 

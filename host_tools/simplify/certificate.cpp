@@ -52,8 +52,8 @@ float float_not_below(double value) noexcept
                : nearest;
 }
 
-/// Visits the items of all lists, one of each in turn: the walks are chains of cache misses, which
-/// overlap this way.
+/// Visits the items of all linked lists, one item of each list in turn, so that the cache misses of
+/// the lists overlap.
 template <typename Next, typename Visit>
 void visit_lists(std::span<std::uint32_t> heads, const Next& next, const Visit& visit)
 {
@@ -150,8 +150,9 @@ void Certificate::take_pieces(const Star& star, Scratch& scratch)
     }
 }
 
-/// Restores whole triangles. A concurrent star can change a triangle's count only if it has one of
-/// its fragments; then the count stays above this star's in any case, and the result is the same.
+/// Restores triangles whose fragments are all in the star. A concurrent star can change a
+/// triangle's count only if it has a fragment of the triangle. Then the count stays above this
+/// star's count in any case, so the result does not depend on the order.
 void Certificate::merge_back(Scratch& scratch, unsigned worker)
 {
     scratch.map.reset(scratch.fragments.size());
@@ -165,7 +166,7 @@ void Certificate::merge_back(Scratch& scratch, unsigned worker)
     {
         const std::uint32_t triangle = pool_[fragment].triangle;
         std::uint32_t& count = scratch.counts[scratch.map.index_of(triangle)];
-        // Relaxed: the threads are joined before more than the count is used.
+        // Relaxed: other workers' data of the triangle is read only after the threads are joined.
         const std::uint32_t total =
             std::atomic_ref(fragment_count_[triangle]).load(std::memory_order_relaxed);
         if (count != kNone && count != total)
@@ -183,7 +184,8 @@ void Certificate::merge_back(Scratch& scratch, unsigned worker)
     scratch.fragments.resize(kept);
 }
 
-/// Computes the corners, of whole triangles once per vertex; few fragments share corners.
+/// Adds the corners of all pieces to the settler. Whole triangles share one point for each vertex;
+/// corners of fragments are added separately, since few are shared.
 void Certificate::place_corners(Scratch& scratch) const
 {
     scratch.parts.clear();
@@ -288,7 +290,7 @@ FaceSamples Certificate::sample(std::uint32_t face, unsigned worker)
     return samples;
 }
 
-/// Middle of a piece, and its area.
+/// Middle of a piece, and its area times `weight`.
 SurfacePoint Certificate::middle_of(std::uint32_t triangle,
                                     const std::array<TrianglePoint, 3>& corners,
                                     double weight) const

@@ -24,9 +24,9 @@ namespace tactus
 /// original triangles or fragments of them. A collapse takes all pieces of its star and assigns
 /// each to one face of the new fan. A face is a convex set, so the distance to it is a convex
 /// function and a piece's largest distance is at a corner: e(face) = max over its pieces of max
-/// over corners. A point's sequence of faces depends only on the collapses of stars that it was in,
-/// so the bound of a face state holds in every dependency-closed cut that has the face in this
-/// state.
+/// over corners. The faces to which a point is assigned in turn depend only on the collapses of
+/// stars that contained the point. The bound of a face state therefore holds in every
+/// dependency-closed cut that has the face in this state.
 ///
 /// The assignment of pieces to faces, and their cuts, affect only the tightness:
 ///   1. a triangle whose fragments are all in the star becomes whole again;
@@ -49,8 +49,8 @@ public:
     /// face may be processed in any order or concurrently, each worker with its own number.
     void reassign(const Star& star, unsigned worker);
 
-    /// Evenly selected pieces of the surface assigned to the face. For faces that no other worker
-    /// re-assigns.
+    /// Selects samples evenly among the pieces of the surface assigned to the face. No other worker
+    /// may re-assign the face during the call.
     [[nodiscard]] FaceSamples sample(std::uint32_t face, unsigned worker);
 
 private:
@@ -81,10 +81,11 @@ private:
 
     const QuantisedMesh& mesh_;
     double diagonal_{0};
-    std::vector<float> errors_;                 ///< Bound by face.
-    std::vector<std::uint32_t> first_whole_;    ///< First whole triangle by face.
-    std::vector<std::uint32_t> next_whole_;     ///< Next whole triangle by triangle.
-    std::vector<std::uint32_t> first_fragment_; ///< First fragment by face.
+    std::vector<float> errors_; ///< Bound by face.
+    /// First whole triangle assigned to each face, or kNone.
+    std::vector<std::uint32_t> first_whole_;
+    std::vector<std::uint32_t> next_whole_; ///< Next whole triangle of the same face, by triangle.
+    std::vector<std::uint32_t> first_fragment_; ///< First fragment assigned to each face, or kNone.
     std::vector<std::uint32_t> fragment_count_; ///< Number of fragments by triangle; 0 if whole.
     FragmentPool pool_;
     std::vector<Scratch> scratch_;

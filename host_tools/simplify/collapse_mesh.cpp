@@ -194,7 +194,8 @@ bool CollapseMesh::has_neighbour(std::uint32_t vertex,
     {
         const std::uint32_t corner = corner_of(face, vertex);
         const std::uint32_t next = neighbours_[face][previous_corner(corner)];
-        // The previous corner is the next face's next corner, except for a border's last face.
+        // The next face repeats the previous corner as its next corner; only the last face at a
+        // border has no next face.
         if (is_among(corners_[face][next_corner(corner)]) ||
             (next == kNoFace && is_among(corners_[face][previous_corner(corner)])))
         {
@@ -234,9 +235,10 @@ std::uint32_t CollapseMesh::face_across_hole(const Star& star) const noexcept
     const std::uint32_t end = star.open_end();
     const std::uint32_t from = star.has_face(0) ? star.parent : end;
     const std::uint32_t to = star.has_face(0) ? end : star.parent;
-    const std::uint32_t face = first_face_[from]; // The first of the fan: its edge is a border.
+    // First face of the fan: its edge from `from` is a border.
+    const std::uint32_t face = first_face_[from];
     const bool is_three = corners_[face][next_corner(corner_of(face, from))] == to;
-    // An inner vertex with fewer than three faces has two back to back.
+    // With fewer than three faces, the new inner vertex would have two faces back to back.
     const bool is_round = degree_[end] >= 3 && degree_[star.parent] + star.fan_size >= 4;
     return is_three && is_round ? face : kNoFace;
 }
@@ -265,7 +267,7 @@ bool CollapseMesh::is_legal(const Star& star) const noexcept
     return true;
 }
 
-/// Joins the fan's end face to the face beyond A (or B), which is removed:
+/// Unlinks A (or B), the face `removed`, and joins the fan's end face to the face beyond it:
 ///
 ///     A = (v, u, w0), beyond it the face with edge w0 -> u; the fan's first face has edge v -> w0.
 ///     B = (v, wk, u), beyond it the face with edge u -> wk; the fan's last face has edge wk -> v.

@@ -15,8 +15,8 @@
 namespace tactus
 {
 
-/// Maximum number of faces of a vertex after a collapse, unless it had more before: it keeps stars
-/// within kMaxStarFaces and costs no quality.
+/// Maximum number of faces of a vertex after a collapse, unless it had more before. The limit keeps
+/// stars within kMaxStarFaces and costs no quality.
 inline constexpr std::uint32_t kMaxDegree = 10;
 
 /// The faces around one vertex, counter-clockwise. Face i is (vertex, neighbours[i], neighbours[i +
@@ -53,29 +53,30 @@ struct Star
     {
         return faces[side] != Collapse::kNoFace;
     }
-    /// Border vertex at the fan's other end, for a star with one of A and B.
+    /// Border vertex at the fan's end without A or B; the star must have exactly one of these two
+    /// faces.
     [[nodiscard]] std::uint32_t open_end() const noexcept
     {
         return rim[has_face(0) ? fan_size : 0];
     }
 };
 
-/// Star of a ring's collapse at one place.
+/// Star of the collapse of the ring's vertex onto parent_at(place).
 [[nodiscard]] Star star_at(const VertexRing& ring, std::uint32_t place) noexcept;
 
 /// The mesh during simplification: corners, the face across each edge, and each vertex's first face
 /// and degree. 26 bytes a face. Faces and vertices keep their numbers; removed ones stay in place.
 ///
 /// Only collapses that keep the mesh 2-manifold with borders are legal. The link condition requires
-/// that the ends of the edge have no common neighbour except the one or two across the edge (a
-/// border counts as joined to a vertex at infinity, so a border vertex moves along its border
-/// only). A vertex with three faces is not removed if its fourth face exists already: a tetrahedron
-/// stays. A hole of three edges counts as a face that is removed with the edge, so it closes.
+/// that the ends of the edge have no common neighbour except the one or two across the edge. A
+/// border counts as joined to a vertex at infinity, so a border vertex moves along its border only.
+/// A vertex with three faces is not removed if its fourth face exists already: a tetrahedron stays.
+/// A hole of three edges counts as a face that is removed with the edge, so it closes.
 class CollapseMesh
 {
 public:
-    /// Creates the mesh. Refused, with the place: the refusals of match_edges(), and a vertex
-    /// without faces or with more than one fan.
+    /// Creates the mesh. Refusals name the place: those of match_edges(), a vertex without faces,
+    /// and a vertex with more than one fan.
     [[nodiscard]] static Result<CollapseMesh, Refusal> create(const QuantisedMesh& mesh);
 
     [[nodiscard]] std::uint32_t vertex_count() const noexcept
@@ -116,23 +117,24 @@ public:
     /// Fills the ring of a present vertex with at most kMaxStarFaces faces.
     void walk_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
 
-    /// Fills `ring`; false if the vertex is removed or no star of it fits the star cap.
+    /// Fills `ring`. Returns false if the vertex is removed or the fan of its stars is empty or
+    /// exceeds kMaxFanFaces.
     [[nodiscard]] bool gather_ring(std::uint32_t vertex, VertexRing& ring) const noexcept;
 
     /// Face that will share an edge with the fan's open end if the collapse closes a hole of three
     /// edges; otherwise kNoFace.
     [[nodiscard]] std::uint32_t face_across_hole(const Star& star) const noexcept;
 
-    /// True if the collapse keeps the mesh manifold and the parent's degree within kMaxDegree.
-    /// Costs a walk around a few neighbours; of two vertices the one of smaller degree.
+    /// True if the collapse keeps the mesh manifold and the parent's degree within kMaxDegree. The
+    /// cost is a walk around the parent, or around the rim's vertices if the parent's degree is
+    /// above kMaxDegree.
     [[nodiscard]] bool is_legal(const Star& star) const noexcept;
 
     /// Replaces the vertex by the parent in the fan and removes A and B. `star` must be legal.
     void collapse(const Star& star) noexcept;
 
-    /// Executes the last step of an Absorption together with those between the first and it:
-    /// removes A and B, which are their whole component, and the corners other than the parent, and
-    /// puts the parent in the vertex's place.
+    /// Executes all steps of an Absorption except the flattening; `star` is its last step. Removes
+    /// A and B and their corners except the parent, which replaces the vertex in the fan.
     void absorb(const Star& star) noexcept;
 
 private:
@@ -151,7 +153,8 @@ private:
 
     std::vector<std::array<std::uint32_t, 3>> corners_;
     FaceNeighbours neighbours_;
-    /// Any face of an inner vertex, or the first of the fan on a border: a walk from it visits all.
+    /// One face of each vertex; on a border the first of the fan, so that a counter-clockwise walk
+    /// visits all faces.
     std::vector<std::uint32_t> first_face_;
     std::vector<std::uint32_t> degree_; ///< Number of faces of the vertex; 0 if removed.
     std::uint32_t faces_left_{0};

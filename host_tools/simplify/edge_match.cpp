@@ -15,11 +15,13 @@ namespace tactus
 namespace
 {
 
-/// Maximum number of faces: two faces a record, and record ids end at kMaxRecords.
+/// Maximum number of faces. Usual meshes have half as many records, and record ids end at
+/// kMaxRecords.
 constexpr std::size_t kMaxFaces = std::size_t{kMaxRecords};
 constexpr std::int32_t kGridEnd = 1 << kMaxPositionBits;
 
-/// A directed edge seen from its lower-numbered end.
+/// An edge of a face, listed at its lower-numbered vertex; `far_vertex` is the other end and
+/// `corner` the corner of the face where the edge starts.
 struct EdgeEnd
 {
     std::uint32_t far_vertex;
@@ -107,7 +109,8 @@ EdgeGroups group_edges(const QuantisedMesh& mesh)
     {
         groups.start[v] += groups.start[v - 1];
     }
-    // start[v + 1] is the next free place of group v while filling, and its end afterwards.
+    // While the groups are filled, start[v + 1] is the next free index of group v; afterwards it is
+    // the end of group v.
     for_each_directed_edge(
         mesh,
         [&](std::uint32_t f, std::uint8_t corner, std::uint32_t from, std::uint32_t to)

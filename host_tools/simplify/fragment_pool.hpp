@@ -26,20 +26,22 @@ struct TrianglePoint
     constexpr bool operator==(const TrianglePoint&) const noexcept = default;
 };
 
-/// A part of an original triangle that is separate from the rest of it.
+/// A part of an original triangle. The fragments of a triangle may be assigned to different faces.
 struct Fragment
 {
     std::array<TrianglePoint, 3> corners{};
     std::uint32_t triangle{0};
-    std::uint32_t next{0}; ///< Next fragment in the list of its face, or of free slots.
-    /// Number of cuts that made it; each adds to the slack of its bound.
+    /// Next fragment in the list of its face, or next free slot; kNone at the end.
+    std::uint32_t next{0};
+    /// Number of cuts that produced the fragment; each cut adds to the slack of its bound.
     std::uint32_t generation{0};
 };
 
 static_assert(sizeof(Fragment) == 36);
 
-/// Fragments by number. Each worker takes and returns on its own; another worker may read a
-/// fragment once the threads have been joined. Numbers depend on the workers, results must not.
+/// Pool of fragments, addressed by number. Each worker takes and returns slots through its own free
+/// list. Another worker may read a fragment once the threads have been joined. Numbers depend on
+/// the assignment of work to workers; results must not.
 class FragmentPool
 {
 public:
@@ -77,7 +79,7 @@ public:
 
 private:
     static constexpr std::uint32_t kBlockSize = 1U << 13U;
-    static constexpr std::uint32_t kBlocksMax = 1U << 16U; ///< 19 GB; memory ends before.
+    static constexpr std::uint32_t kBlocksMax = 1U << 16U; ///< Limit: 19 GB of fragments.
 
     using Block = std::array<Fragment, kBlockSize>;
 

@@ -37,7 +37,7 @@ bool has(const Face& face, std::uint32_t vertex)
     return face[corner_of(face, vertex)] == vertex;
 }
 
-/// List of second ends by first end.
+/// Second ends of the pairs, listed by first end; first ends are below `numbers`.
 IndexLists second_ends(std::size_t numbers, std::span<const MeshEdge> pairs)
 {
     return {numbers, [pairs](const auto& add)
@@ -49,7 +49,7 @@ IndexLists second_ends(std::size_t numbers, std::span<const MeshEdge> pairs)
             }};
 }
 
-/// Both directions of each edge, sorted.
+/// Edges of the faces in both directions, sorted, each once.
 std::vector<MeshEdge> edges_of(std::span<const Face> faces)
 {
     std::vector<MeshEdge> edges;
@@ -124,7 +124,7 @@ public:
     }
 
     [[nodiscard]] std::size_t vertex_count() const { return source_.size(); }
-    /// Mesh vertex of a number.
+    /// Vertex of the source mesh, by vertex of the base mesh.
     [[nodiscard]] std::uint32_t source(std::uint32_t vertex) const { return source_[vertex]; }
 
     /// Triples of inner edges that form no face, shortest first.
@@ -173,7 +173,7 @@ public:
         return false;
     }
 
-    /// Reverts a cut.
+    /// Reverts the cut along a triple.
     void join(const Triple& triple)
     {
         for (const auto& [from, to] : triple.edges())
@@ -201,7 +201,7 @@ private:
     {
         return (grid_point(mesh_, a) - grid_point(mesh_, b)).squaredNorm();
     }
-    /// Half-edge 3 x face + place; the directed edge must exist.
+    /// Half-edge of a directed edge, which must exist: 3 x face + index of the first corner.
     [[nodiscard]] std::uint32_t half_edge(const MeshEdge& edge) const
     {
         return std::ranges::lower_bound(sides_, std::pair(edge, 0U))->second;
@@ -216,7 +216,8 @@ private:
         return is_there(edge) && is_there({edge[1], edge[0]});
     }
 
-    /// True if a path connects the left faces with the right ones; searches from both in turn.
+    /// True if a path of faces connects the left faces with the right ones, or if kSideFacesMax
+    /// faces a side do not decide it. Searches from both sides in turn.
     [[nodiscard]] bool are_one(std::vector<std::uint32_t> left, std::vector<std::uint32_t> right)
     {
         last_side_ += 2;
@@ -276,7 +277,8 @@ public:
     {
     }
 
-    /// Ring through the patches a, b and c in turn; empty if a patch is not connected.
+    /// Finds a ring through the patches of three base vertices in turn; empty if no path was found.
+    /// A patch is the set of source vertices that moved onto one base vertex.
     [[nodiscard]] std::vector<MeshEdge> find(const Face& patches)
     {
         std::vector<MeshEdge> beginnings;
@@ -320,8 +322,8 @@ private:
         return pairs;
     }
 
-    /// Shortest path, breadth first, from the first end of `beginning` to its last one, that never
-    /// returns to a patch.
+    /// Closes a shortest path from the first end of `beginning` to its last end by that edge. The
+    /// path passes the patches in order; empty if there is none.
     [[nodiscard]] std::vector<MeshEdge> shortest(const MeshEdge& beginning, const Face& patches)
     {
         const auto [first, last] = beginning;
@@ -358,7 +360,7 @@ private:
         return ring;
     }
 
-    std::vector<std::uint32_t> base_of_; ///< Base vertex by vertex.
+    std::vector<std::uint32_t> base_of_; ///< Base vertex onto which each vertex of the mesh moved.
     IndexLists neighbours_;
     IndexLists members_;                ///< Vertices that moved onto each base vertex.
     std::vector<std::uint32_t> before_; ///< Previous vertex on the path, in a search.
@@ -432,7 +434,7 @@ std::size_t cut_open(QuantisedMesh& mesh, std::span<const MeshEdge> edges)
     std::vector<bool> is_named(3 * before.size(), false);
     const auto name_fan = [&](std::uint32_t start, std::uint32_t old, std::uint32_t name)
     {
-        // Clockwise to the fan's end, or once around; then counter-clockwise from the start.
+        // Walks clockwise to the fan's end or once around, then counter-clockwise from the start.
         for (const std::uint32_t turn : {2U, 0U})
         {
             std::uint32_t face = start;

@@ -13,8 +13,8 @@ namespace tactus
 
 /// Calls work(worker, begin, end) for consecutive blocks that cover 0 .. count - 1, on `threads`
 /// threads, the caller's included. The assignment of blocks to workers is arbitrary: results must
-/// not depend on it. Threads live for one call; at two calls a round that costs less than a pool's
-/// code.
+/// not depend on it. Each call starts its own threads; simplify() calls it only a few times a
+/// round.
 template <typename Work>
 void parallel_blocks(unsigned threads, std::size_t count, std::size_t block, const Work& work)
 {

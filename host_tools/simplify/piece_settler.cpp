@@ -121,7 +121,7 @@ std::span<const Assignment> PieceSettler::settle(const Part& piece, const Quanti
         cut_open_parts(plane, frame);
     }
     settled_.insert(settled_.end(), open_.begin(), open_.end());
-    // Cuts without effect are undone: if all parts are on one face, so is the piece.
+    // If all parts are assigned to one face, the cuts are undone.
     const std::uint32_t place = settled_.front().place;
     if (std::ranges::all_of(settled_, [=](const Assignment& a) { return a.place == place; }))
     {

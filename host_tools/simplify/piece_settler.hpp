@@ -20,7 +20,7 @@ namespace tactus
 struct Assignment
 {
     Part part;
-    std::uint32_t place{0}; ///< Place in the fan.
+    std::uint32_t place{0}; ///< Index of that face in the fan.
     double squared{0};      ///< Largest squared distance of a corner to that face.
 };
 
@@ -31,19 +31,20 @@ struct Assignment
 class PieceSettler
 {
 public:
-    /// Starts a star: the faces after the collapse and, for each two, the half plane from the
-    /// parent along their common edge that bisects their normals' angle.
+    /// Starts a star: prepares the fan faces after the collapse. Between each two adjacent ones
+    /// lies a cut plane: a half plane from the parent along their common edge that bisects the
+    /// angle of their normals.
     void begin(const QuantisedMesh& mesh, const Star& star);
 
-    /// Adds a corner of a piece; returns its number.
+    /// Adds a corner of a piece; returns its index for Part::points.
     std::uint32_t add_point(const Vec3& point);
 
     /// Measures the corners added since begin() and computes the distance up to which a piece stays
     /// uncut, at least `floor_quanta`.
     void measure(double floor_quanta);
 
-    /// The parts of a piece with their faces; only the piece itself if it stays uncut. Valid until
-    /// the next call.
+    /// Assigns a piece: returns its parts with their faces, or the piece itself if it stays uncut.
+    /// The result is valid until the next call.
     [[nodiscard]] std::span<const Assignment> settle(const Part& piece, const QuantisedMesh& mesh,
                                                      std::uint32_t triangle);
 

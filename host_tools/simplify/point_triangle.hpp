@@ -11,7 +11,7 @@
 namespace tactus
 {
 
-/// Points in columns, for the distance kernel.
+/// Points as one array for each coordinate, for the distance kernel.
 struct PointColumns
 {
     std::vector<double> x;
@@ -27,11 +27,11 @@ struct PointColumns
 
 /// A triangle prepared for many point distances.
 ///
-/// The distance is the least of the three sides' (each a clamped projection), and the plane's if
-/// the projection lies strictly inside. With corners on the integer grid of at most 24 bits the
-/// normal is exact (products of 25-bit differences, 51 bits in all), so unlike in general the error
-/// does not grow with the triangle's aspect ratio: a point within 2^25 quanta gets its distance
-/// within 1e-7 quanta, on needles too, and a triangle without area is three segments.
+/// The distance is that to the plane if the point's projection lies strictly inside the triangle,
+/// otherwise the least distance to a side (a clamped projection). With corners on an integer grid
+/// of at most 24 bits the normal is exact: products of 25-bit differences have at most 51 bits. The
+/// error therefore does not grow with the triangle's aspect ratio: a point within 2^25 quanta gets
+/// its distance within 1e-7 quanta, on needles too, and a triangle without area is three segments.
 class DistanceTriangle
 {
 public:

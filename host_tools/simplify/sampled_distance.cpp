@@ -136,7 +136,7 @@ private:
     PointColumns point_; ///< Query point in the kernel's form.
 };
 
-/// Number uniform in 0 .. 1, the same on every machine.
+/// Next random number, uniform in [0, 1), the same on every machine.
 double unit_from(std::mt19937_64& random)
 {
     return static_cast<double>(random() >> 11U) * 0x1p-53;
@@ -168,7 +168,7 @@ double sampled_distance_to_base(const QuantisedMesh& mesh, const Simplification&
     }
     std::mt19937_64 random(seed);
     double largest = 0.0;
-    double passed = 0.0; // Area of the faces before.
+    double passed = 0.0; // Area of the faces already visited.
     std::uint32_t taken = 0;
     const auto next_at = [&] { return (taken + unit_from(random)) / samples * area; };
     double next = next_at();

@@ -15,7 +15,8 @@ namespace tactus
 namespace
 {
 
-/// Least cosine between a face's normals before and after.
+/// Least cosine of the angle between a face's normals before and after a collapse; below it, the
+/// collapse is a fold.
 constexpr double kLeastTurnCosine = 0.2;
 /// Limit of double area over the sum of squared sides, which is 0.289 for an equilateral triangle.
 /// Below it a face is thin, about one in nine.

@@ -27,14 +27,14 @@ namespace
 /// Share of a round's candidates that are taken, best first. Smaller rounds give a better base and
 /// a deeper forest (30 % gives 26 to 38 rounds to 1 %).
 constexpr double kTakenShare = 0.3;
-/// Number of vertices for one candidate below which a round starves; it then also takes candidates
-/// of higher spoil levels.
+/// A round starves if it has fewer than one candidate for this number of remaining vertices. It
+/// then also takes candidates of higher spoil levels.
 constexpr std::size_t kStarvedShare = 64;
-/// Share of the faces below which the measured error ranks the candidates.
+/// Share of the faces left, below which Priority::measured replaces Priority::quadric.
 constexpr double kMeasuredShare = 0.3;
 
-/// Number of rounds between checks whether the remaining rounds suffice at the present pace.
-/// Successful meshes need fewer rounds in all.
+/// Number of rounds between checks whether the remaining rounds suffice at the present pace. Meshes
+/// that reach their base need fewer rounds in all.
 constexpr std::uint32_t kPaceRounds = 64;
 
 constexpr unsigned kMaxThreads = 256;
@@ -43,13 +43,14 @@ constexpr std::size_t kStarBlock = 32;
 
 /// Executes rounds of collapses with disjoint stars.
 ///
-/// A round finds each vertex's best collapse in the present mesh, sorts the best of them and
-/// executes them one after another, skipping each whose star was touched in this round or that an
-/// earlier one made illegal. The result *is* thus a sequential execution. Costs depend on the star
-/// alone and therefore stay valid; only the link condition and the degree depend on more. Disjoint
-/// stars commute, so any dependency-closed cut is again a legal sequential execution. Finding
-/// candidates and re-assigning pieces run in parallel; both read nothing that another vertex or
-/// star of the same phase writes, and order is by cost and vertex.
+/// A round finds each vertex's best collapse in the present mesh, sorts the best of these and
+/// executes them one after another. It skips a collapse whose star was touched in this round, or
+/// that an earlier collapse made illegal. The result *is* thus a sequential execution. Costs depend
+/// on the star alone and therefore stay valid; only the link condition and the degree depend on
+/// more. Disjoint stars commute, so any dependency-closed cut is again a legal sequential
+/// execution. Finding candidates and re-assigning pieces run in parallel; neither reads data that
+/// another vertex or star of the same phase writes. Candidates are ordered by cost and vertex, so
+/// the result does not depend on threads.
 class Simplifier
 {
 public:
@@ -99,7 +100,7 @@ private:
     std::vector<std::uint8_t> stale_;   ///< Flags by vertex: the candidate must be found again.
     std::vector<Candidate> picked_;     ///< Candidates of this round.
     Priority priority_{Priority::quadric};
-    std::vector<std::uint8_t> touched_; ///< Flags by face: touched in this round.
+    std::vector<std::uint8_t> touched_; ///< Flags by face: 1 if a star of this round has the face.
     std::vector<Star> round_;           ///< Stars of this round.
     std::size_t components_;
     std::size_t stuck_faces_{0}; ///< Faces in components that cannot shrink, in the round before.
@@ -141,8 +142,8 @@ Result<Simplification, Refusal> Simplifier::run()
     return std::move(result_);
 }
 
-/// True if the remaining rounds do not suffice at the present pace, for example with many pieces at
-/// one place of which a few vanish in each round.
+/// True if the remaining rounds do not suffice at the present pace, for example if few of many
+/// pieces at one place vanish in each round.
 bool Simplifier::is_hopeless() noexcept
 {
     const std::size_t rounds = result_.rounds - paced_rounds_;
@@ -269,9 +270,9 @@ bool Simplifier::is_untouched(const VertexRing& ring) const noexcept
                         [&](std::uint32_t face) { return touched_[face] != 0; });
 }
 
-/// Maximum cost of an absorption: that of the round's worst collapse. It is unlimited if components
-/// that cannot shrink outnumber the others or keep the mesh above its base. Negative if no
-/// absorption can be that cheap.
+/// Maximum cost of an absorption: the cost of the worst collapse picked for this round. It is
+/// unlimited if components that cannot shrink outnumber the others or keep the mesh above its base.
+/// Negative if no absorption can be that cheap.
 double Simplifier::allowed_absorption_cost()
 {
     const std::size_t stuck = count_stuck_faces(current_);
@@ -285,7 +286,8 @@ double Simplifier::allowed_absorption_cost()
     return is_worth_a_look ? picked_.back().cost : -1;
 }
 
-/// Absorbs components; each step is its own round. False if nothing was absorbed.
+/// Absorbs components. Each step of the absorptions counts as one round of the result. False if
+/// nothing was absorbed.
 bool Simplifier::absorb_components()
 {
     const double cost_max = allowed_absorption_cost();

@@ -23,11 +23,14 @@ struct Collapse
 {
     static constexpr std::uint32_t kNoFace = 0xFFFF'FFFFU;
 
-    std::uint32_t vertex{0}; ///< v, an index into the mesh.
-    std::uint32_t parent{0}; ///< u.
-    std::uint32_t round{0};  ///< Round; stars of one round are disjoint, and rounds count from 0.
+    /// Vertex that the collapse removes (v in page.hpp), as an index into the mesh.
+    std::uint32_t vertex{0};
+    /// Vertex onto which `vertex` moves (u in page.hpp), as an index into the mesh.
+    std::uint32_t parent{0};
+    std::uint32_t round{0}; ///< Number of the round, from 0; the stars of one round share no face.
     std::uint32_t fan_size{0};
-    std::array<std::uint32_t, kMaxStarFaces> star{}; ///< Faces of the mesh.
+    /// Faces of the star, as indices into the mesh; kNoFace if missing.
+    std::array<std::uint32_t, kMaxStarFaces> star{};
     /// Certified bound, in quanta, of each star face *before* this collapse, that is after the
     /// split: every original surface point assigned to the face is within it. 0 if the face was
     /// still original.
@@ -40,19 +43,20 @@ struct Simplification
 {
     std::vector<Collapse> collapses; ///< Collapses in order of execution; rounds ascend.
     std::uint32_t rounds{0};
-    std::vector<std::uint32_t> base_faces; ///< Faces of the mesh that remain.
-    /// Present corners of these faces, as mesh vertices.
+    std::vector<std::uint32_t> base_faces; ///< Faces of the base mesh, as indices into the mesh.
+    /// Corners of `base_faces` after all collapses, as vertices of the mesh.
     std::vector<std::array<std::uint32_t, 3>> base_corners;
-    std::vector<float> base_error; ///< Certified bounds of these faces, in quanta.
+    std::vector<float> base_error; ///< Certified bounds of `base_faces`, in quanta.
     bool is_closed{false};         ///< True if the mesh has no border.
 };
 
 struct SimplifyOptions
 {
-    std::uint32_t base_faces{500}; ///< Target: stop at or below this number of faces; 1 or more.
-    unsigned threads{1};           ///< 1 to 256; the result does not depend on it.
+    /// Number of faces at or below which simplification stops; 1 or more.
+    std::uint32_t base_faces{500};
+    unsigned threads{1}; ///< Number of threads, 1 to 256; the result does not depend on it.
     /// Callback between rounds, on the calling thread, with the faces left and the faces at the
-    /// start; false cancels.
+    /// start. If it returns false, the run is cancelled; empty: no callback.
     std::function<bool(std::size_t faces_left, std::size_t faces_total)> progress;
 };
 

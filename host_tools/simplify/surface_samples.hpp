@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// A point of the original surface and the area that it represents, in quanta. Single precision
-/// suffices: samples only rank collapses.
+/// A point of the original surface, in quanta, and the area that it represents, in quanta^2. Single
+/// precision suffices: samples only rank collapses.
 struct SurfacePoint
 {
     float x;
@@ -33,22 +33,23 @@ struct StarSamples
     std::vector<double> areas; ///< Areas in quanta^2.
 };
 
-/// Keeps each present face's samples, so that ranking the collapses of a star reads a few lines of
-/// memory instead of all pieces of its faces. Present means at the start. About 100 B a face.
+/// Samples of each face that was present at start(). Ranking the collapses of a star thus reads a
+/// few lines of memory instead of all pieces of its faces. About 100 B a face.
 class SurfaceSamples
 {
 public:
-    /// Makes room for the faces in `present`, of `face_count` in the mesh.
+    /// Makes room for samples of the faces in `present`; `face_count` is the number of faces of the
+    /// mesh.
     void start(std::span<const std::uint32_t> present, std::size_t face_count);
 
-    /// Different faces may be set at the same time.
+    /// Sets the samples of a face. Threads may set different faces at the same time.
     void set(std::uint32_t face, const FaceSamples& samples) { faces_[slot_[face]] = samples; }
 
     /// Fills `star` with the samples of the faces.
     void gather(std::span<const std::uint32_t> faces, StarSamples& star) const;
 
 private:
-    std::vector<std::uint32_t> slot_; ///< Slot by face of the mesh.
+    std::vector<std::uint32_t> slot_; ///< Index into `faces_`, by face of the mesh.
     std::vector<FaceSamples> faces_;
 };
 

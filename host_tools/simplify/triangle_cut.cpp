@@ -18,7 +18,7 @@ struct PartCorner
     std::uint32_t point{0};
 };
 
-/// One side of a cut triangle: three or four corners.
+/// Part of a triangle on one side of a cut, with three or four corners.
 using Polygon = StaticVector<PartCorner, 4>;
 
 std::uint32_t between(std::uint32_t from, std::uint32_t to, double t) noexcept

@@ -28,7 +28,8 @@ struct TriangleFrame
 
 [[nodiscard]] TriangleFrame frame_of(const QuantisedMesh& mesh, std::uint32_t triangle) noexcept;
 
-/// Part of an original triangle during one re-assignment; `points` index the star's point columns.
+/// Part of an original triangle during one re-assignment. `points` are indices into the star's
+/// PointColumns; `generation` is the number of cuts that produced the part.
 struct Part
 {
     std::array<TrianglePoint, 3> at{};
@@ -36,7 +37,8 @@ struct Part
     std::uint32_t generation{0};
 };
 
-/// Half of a plane: it starts at `start` and contains the points on the side of `along`.
+/// Half of the plane through `start` with normal `normal`: the points p with (p - start) . along >
+/// 0.
 struct CutPlane
 {
     Vec3 start;
@@ -47,9 +49,9 @@ struct CutPlane
 /// Parts of a triangle cut by a plane, at most three.
 using CutParts = StaticVector<Part, 3>;
 
-/// Cuts the part, appends the cut points to `points` and returns the parts; none if the half plane
-/// does not cross it. The parts cover the original except for gaps of at most rounding(); their
-/// generation counts the cuts whose gaps the bound must include.
+/// Cuts the part, appends the cut points to `points` and returns the parts; no part if the half
+/// plane does not cross it. The parts cover the original except for gaps of at most rounding();
+/// their generation counts the cuts whose gaps the bound must include.
 [[nodiscard]] CutParts cut(const Part& part, const TriangleFrame& frame, const CutPlane& plane,
                            PointColumns& points);
 

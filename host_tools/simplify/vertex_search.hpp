@@ -36,9 +36,9 @@ public:
         return points_.kdtree_get_point_count();
     }
 
-    /// The 12 nearest to a vertex of the mesh, nearest first, or fewer if there are not as many. Of
-    /// those at one position the next numbers above the vertex come first, so that coincident
-    /// vertices get different neighbours.
+    /// Returns the 12 vertices nearest to a vertex of the mesh, nearest first; fewer if fewer
+    /// exist. Vertices at one position come in ascending order from the first number above
+    /// `vertex`, then wrap around, so that coincident vertices get different neighbours.
     [[nodiscard]] StaticVector<std::uint32_t, 12> nearest(std::uint32_t vertex) const
     {
         std::array<std::uint32_t, 12> places{};
@@ -67,8 +67,9 @@ private:
     struct Points
     {
         const QuantisedMesh& mesh;
-        std::vector<std::uint32_t> vertices; ///< Vertices by place.
-        std::vector<std::size_t> begins;     ///< Beginning of each place's vertices, and their end.
+        std::vector<std::uint32_t> vertices; ///< Vertices, grouped by place (distinct position).
+        /// First index of each place's group; the last entry is the number of vertices.
+        std::vector<std::size_t> begins;
 
         /// Places are in the order of their first vertices.
         Points(const QuantisedMesh& of, std::span<const std::uint32_t> given) : mesh(of)

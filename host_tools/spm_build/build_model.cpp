@@ -24,14 +24,16 @@ namespace tactus::spm_build
 namespace
 {
 
-/// Number of samples for which their largest distance varies by a few percent between seeds; 0.1 s.
+/// Number of samples: their largest distance varies by a few percent between seeds, and they take
+/// 0.1 s.
 constexpr std::uint32_t kDistanceSamples = 20'000;
 constexpr std::uint64_t kSampleSeed = 1;
-/// Maximum number of passes. Each cuts the handles whose rings do not touch; a mesh that needs more
-/// has too many.
+/// Maximum number of passes that cut handles open. Each pass cuts the handles whose rings do not
+/// touch.
 constexpr int kCutPassesMax = 16;
 
-/// Shares of the work until a mesh is on its grid, and until it is simplified. Measured.
+/// Measured shares of the work that is done when the mesh is on its grid, and when it is
+/// simplified.
 constexpr double kPrepared = 0.06;
 constexpr double kSimplified = 0.85;
 
@@ -93,8 +95,8 @@ Result<Simplification, Refusal> simplify_with_progress(const QuantisedMesh& mesh
     return std::move(simplification).value();
 }
 
-/// Simplifies the mesh; if the base is too large, again with its handles cut open. That does not
-/// change whether the mesh counts as closed: the borders of a cut coincide.
+/// Simplifies the mesh. If the base is too large, cuts its handles open and simplifies again. A
+/// closed mesh still counts as closed, since the borders of a cut coincide.
 Result<Simplification, Refusal> simplify_all(QuantisedMesh& mesh, const ModelOptions& options,
                                              std::vector<std::string>& notes)
 {
@@ -125,10 +127,9 @@ Result<Simplification, Refusal> simplify_all(QuantisedMesh& mesh, const ModelOpt
     if (simplification && handles > 0)
     {
         simplification.value().is_closed = is_closed;
-        notes.push_back(
-            fmt::format("{} cut open, without a gap, at {} vertices that are there twice "
-                        "now: the base mesh would have more than {} faces",
-                        counted(handles, "handle"), copies, faces_max));
+        notes.push_back(fmt::format("{} cut open without a gap, with {} vertices duplicated: the "
+                                    "base mesh would have more than {} faces otherwise",
+                                    counted(handles, "handle"), copies, faces_max));
     }
     return simplification;
 }
@@ -138,13 +139,13 @@ void note_base(std::size_t faces, std::uint32_t wanted, std::vector<std::string>
 {
     if (faces > wanted)
     {
-        notes.push_back(fmt::format("the base mesh has {} faces, {} were wanted: pieces, holes or "
-                                    "handles keep it from shrinking",
-                                    faces, wanted));
+        notes.push_back(fmt::format(
+            "the base mesh has {} faces instead of {}: pieces, holes or handles prevent fewer",
+            faces, wanted));
     }
 }
 
-/// Adds a note with the bits that the mesh needs if fewer were requested.
+/// Adds a note if the requested bits give a coarser grid than the mesh's shape needs.
 void note_few_bits(const TriangleMesh& mesh, ModelOptions options, double quantum_m,
                    std::vector<std::string>& notes)
 {
@@ -156,10 +157,10 @@ void note_few_bits(const TriangleMesh& mesh, ModelOptions options, double quantu
     const auto step_m = grid_step(mesh, preparation(options, {}));
     if (step_m && step_m.value() < quantum_m)
     {
-        notes.push_back(fmt::format("{} bits a coordinate, as asked for, make steps of {:.3g} m, "
-                                    "which change the mesh's shape; without --position-bits they "
-                                    "would be {:.3g} m",
-                                    asked, quantum_m, step_m.value()));
+        notes.push_back(
+            fmt::format("{} bits a coordinate give steps of {:.3g} m, which change the mesh's "
+                        "shape; without --position-bits the steps would be {:.3g} m",
+                        asked, quantum_m, step_m.value()));
     }
 }
 

@@ -44,7 +44,8 @@ struct ModelOptions
 /// Place of a model's grid, and its maximum step.
 struct GridChoice
 {
-    std::array<double, 3> place_m{}; ///< Place in the mesh's frame, scaled, not centred.
+    /// A point of the grid in the mesh's frame, scaled, not centred.
+    std::array<double, 3> place_m{};
     std::optional<double> quantum_max_m;
     /// Vertices of other models, in the mesh's frame, that may lie on its borders.
     std::vector<std::array<double, 3>> beside_m{};
@@ -65,8 +66,8 @@ struct Outcome
     std::uint64_t peak_bytes{0}; ///< Peak memory of the whole program so far.
 };
 
-/// Step of the grid that the mesh's model gets by itself. Has the initial refusals of
-/// build_model().
+/// Step, in metres, of the grid that build_model() would choose. Refuses a mesh for the same
+/// reasons up to that choice.
 [[nodiscard]] Result<double, Refusal> grid_step_of(const TriangleMesh& mesh,
                                                    const std::string& source,
                                                    const ModelOptions& options,

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSceneFile = "scene.gltf";
 
-/// The target folder, and a folder in it for unfinished files. Unless finished, it removes what it
-/// created.
+/// The target folder, and a folder in it for unfinished files. The destructor removes that folder,
+/// and the target folder if it was created here and is empty.
 class TargetFolder
 {
 public:

@@ -33,12 +33,12 @@ struct SceneOutcome
     std::vector<std::string> notes; ///< Notes on ignored content of the scene.
 };
 
-/// Builds the models of a glTF scene's meshes in `folder`, one for each different mesh, and the
-/// scene file scene.gltf beside them, which names them (docs/scene-files.md). Objects without a
-/// surface are ignored. All meshes are read before anything is written. Nothing in the folder
-/// changes until all models are built; then they are moved into place, and the scene file last. A
-/// refusal leaves nothing new, unless the disk fails between these moves. A signal may leave a
-/// folder PID.partial in `folder`.
+/// Builds in `folder` one model for each different mesh of a glTF scene, and the scene file
+/// scene.gltf, which names the models (docs/scene-files.md). Objects without a surface are ignored.
+/// All meshes are read before anything is written. Nothing in the folder changes until all models
+/// are built; then they are moved into place, and the scene file last. A refusal leaves nothing
+/// new, unless the disk fails between these moves. A signal may leave a folder PID.partial in
+/// `folder`.
 [[nodiscard]] Result<SceneOutcome, Refusal> build_scene(const std::filesystem::path& input,
                                                         const std::filesystem::path& folder,
                                                         const ModelOptions& options,

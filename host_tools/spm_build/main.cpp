@@ -13,6 +13,7 @@
 #include "platform/program/progress.hpp"
 #include "platform/program/run_program.hpp"
 #include "transport/base/atomic_file.hpp"
+#include "transport/base/counted.hpp"
 #include "transport/base/program_log.hpp"
 
 #include <fmt/format.h>
@@ -54,7 +55,7 @@ Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<st
             const bool is_pipe = !options.format && std::filesystem::exists(options.input, code) &&
                                  !std::filesystem::is_regular_file(options.input, code) &&
                                  !std::filesystem::is_directory(options.input, code);
-            return Refusal{file.error().text + (is_pipe ? "; with --format a pipe is read" : "")};
+            return Refusal{file.error().text + (is_pipe ? "; a pipe needs --format" : "")};
         }
         notes = file.value().notes;
         return std::move(file.value().mesh);
@@ -66,7 +67,7 @@ Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<st
     }
     if (mesh.value().faces.size() != options.shape_faces)
     {
-        notes.push_back(fmt::format("{} faces were asked for; the shape has {}",
+        notes.push_back(fmt::format("{} faces were requested; the shape has {}",
                                     options.shape_faces, mesh.value().faces.size()));
     }
     return std::move(mesh).value();
@@ -126,9 +127,8 @@ void print_summary(const Options& options, const Outcome& outcome)
                figures["bytes_per_face"].get<double>(), figures["chunks"].get<std::uint32_t>(),
                fields.occupied_regions);
     fmt::print(
-        "diagonal {:.6g} m, a unit of the mesh is {:.6g} m; of it: quantisation {:.2e}, source to "
-        "base mesh {:.2e} (sampled), "
-        "largest error bound {:.2e}\n",
+        "diagonal {:.6g} m, a unit of the mesh is {:.6g} m; as fractions of the diagonal: "
+        "quantisation {:.2e}, source to base mesh {:.2e} (sampled), largest error bound {:.2e}\n",
         outcome.diagonal_m, outcome.metres_per_unit, figures["quantisation_diag"].get<double>(),
         figures["hausdorff_diag_sampled"].get<double>(), figures["e_max_diag"].get<double>());
     fmt::print("{:.1f} s, {:.0f} faces per second, {} MiB at the peak\n", outcome.seconds,
@@ -143,9 +143,9 @@ void print_scene_summary(const Options& options, const SceneOutcome& outcome)
         nlohmann::json figures = figures_of(model.outcome);
         if (!options.json)
         {
-            fmt::print("{}.spm: {} faces, {} bytes, {:.2f} per face; {} objects\n", model.name,
+            fmt::print("{}.spm: {} faces, {} bytes, {:.2f} per face; {}\n", model.name,
                        model.outcome.fields.source_faces, model.outcome.fields.file_bytes,
-                       figures["bytes_per_face"].get<double>(), model.objects);
+                       figures["bytes_per_face"].get<double>(), counted(model.objects, "object"));
         }
         figures["name"] = model.name;
         figures["objects"] = model.objects;
@@ -159,8 +159,8 @@ void print_scene_summary(const Options& options, const SceneOutcome& outcome)
                                .dump());
         return;
     }
-    fmt::print("{}: {} objects of {} models\n", outcome.file.string(), outcome.objects,
-               outcome.models.size());
+    fmt::print("{}: {} of {}\n", outcome.file.string(), counted(outcome.objects, "object"),
+               counted(outcome.models.size(), "model"));
 }
 
 int make_scene(const CommandLine& line, const Options& options)
@@ -187,8 +187,8 @@ int make_scene(const CommandLine& line, const Options& options)
 
 int run(int argc, char** argv)
 {
-    CommandLine line("spm_build", "Turns a triangle mesh into an SPM model, or each mesh of a "
-                                  "glTF scene.");
+    CommandLine line("spm_build",
+                     "Converts a triangle mesh, or each mesh of a glTF scene, to an SPM model.");
     const auto parsed = parse_options(line, argc, argv);
     if (const int* code = std::get_if<int>(&parsed))
     {
@@ -220,6 +220,6 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    return tactus::run_program("spm_build", "about 480 bytes a face are needed",
+    return tactus::run_program("spm_build", "about 480 bytes per face are needed",
                                [&] { return tactus::spm_build::run(argc, argv); });
 }

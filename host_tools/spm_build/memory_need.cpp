@@ -17,12 +17,13 @@ namespace
 constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t kMib = std::uint64_t{1} << 20U;
 
-/// Upper estimate. Measured on shapes and scans of 13 k to 400 k faces with 2 and 16 threads: 310
-/// to 440, beside the need without a mesh.
+/// Upper estimate of the memory for a face. Measured on shapes and scans of 13 k to 400 k faces
+/// with 2 and 16 threads: 310 to 440 bytes, besides kBaseMib.
 constexpr std::uint64_t kBytesPerFace = 480;
 constexpr std::uint64_t kBaseMib = 16;
 
-/// The number at the start of a file; a group without a limit says "max".
+/// The number at the start of a file; kUnknown without one, such as "max" for a group without a
+/// limit.
 std::uint64_t number_in(const std::filesystem::path& path)
 {
     std::ifstream file(path);
@@ -80,9 +81,8 @@ std::optional<Refusal> check_memory(const std::string& what, std::uint64_t neede
     const auto available = available_mib();
     return !available || needed <= *available
                ? std::nullopt
-               : std::optional(Refusal{fmt::format("{} needs {} MiB, {} are available; "
-                                                   "--memory-mib {} builds it all the same, by "
-                                                   "swapping",
+               : std::optional(Refusal{fmt::format("{} needs {} MiB, but {} are available; set "
+                                                   "--memory-mib {} to build with swapping",
                                                    what, needed, *available, needed)});
 }
 

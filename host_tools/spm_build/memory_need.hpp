@@ -21,7 +21,7 @@ namespace tactus::spm_build
 [[nodiscard]] std::optional<std::uint64_t> available_mib(const std::filesystem::path& root = "/");
 
 /// Refuses a need above `allowed_mib`, or above the machine's available memory if that is not set,
-/// and states the least sufficient value. `what` names the object.
+/// and states the least sufficient value. `what` names the mesh or file in the refusal.
 [[nodiscard]] std::optional<Refusal> check_memory(const std::string& what, std::uint64_t needed,
                                                   std::optional<std::uint32_t> allowed_mib);
 

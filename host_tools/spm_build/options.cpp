@@ -18,7 +18,7 @@ namespace tactus::spm_build
 namespace
 {
 
-/// Options that are kept as words.
+/// Options that are read as text and converted later.
 struct Words
 {
     std::string format;
@@ -28,25 +28,26 @@ struct Words
 void declare_options(CommandLine& line, Options& options, Words& words)
 {
     line.add_version("spm_build " TACTUS_VERSION);
-    line.begin_task("From what to where", "spm_build part.stl --unit mm -o part.spm");
-    const auto input = line.add_option(
-        "IN", options.input,
-        "Mesh to read: .ply, .obj, .stl or .off, or - for standard input; or scene: .gltf or .glb");
+    line.begin_task("Input and output", "spm_build part.stl --unit mm -o part.spm");
+    const auto input = line.add_option("IN", options.input,
+                                       "Mesh to read (.ply, .obj, .stl or .off, or - for standard "
+                                       "input), or scene (.gltf or .glb)");
     line.add_option("-o,--output", options.output,
-                    "Model to write (.spm); of a scene the folder for its "
-                    "models and scene.gltf")
+                    "Model to write (.spm); for a scene, the folder for its models and scene.gltf")
         .required();
     const std::vector<std::string_view> names = shape_names();
     const auto shape =
-        line.add_option("--shape", options.shape, "Make a shape instead of reading a mesh")
+        line.add_option("--shape", options.shape, "Shape to make instead of reading a mesh")
             .one_of({names.begin(), names.end()})
             .excludes(input);
-    const auto faces = line.add_option("--faces", options.shape_faces, "Faces of the shape")
-                           .number_between(kMinShapeFaces, kMaxShapeFaces)
-                           .needs(shape);
+    const auto faces =
+        line.add_option("--faces", options.shape_faces, "Number of faces of the shape")
+            .number_between(kMinShapeFaces, kMaxShapeFaces)
+            .needs(shape);
     shape.needs(faces);
     line.add_option("--format", words.format,
-                    "Format of a mesh whose name doesn't tell it; with it, IN may be a pipe")
+                    "Format of the mesh if its name does not end in the format; needed for "
+                    "standard input and pipes")
         .one_of({"ply", "obj", "stl", "off"})
         .excludes(shape);
     line.begin_task("Size and place", "spm_build terrain.ply --fit-diag 0.2 --center -o t.spm");
@@ -57,41 +58,44 @@ void declare_options(CommandLine& line, Options& options, Words& words)
                    "mm|cm|m|in")
             .show_default();
     const auto scale = line.add_option("--scale", options.placing.scale,
-                                       "Make the mesh, or all of a scene, so many times as large")
+                                       "Factor of the size of the mesh or of the whole scene")
                            .number_between(1e-9, 1e9)
                            .show_default();
     line.add_option("--fit-diag", options.model.fit_diagonal_m,
-                    "Scale the model to this bounding-box diagonal, in metres, whatever its size")
+                    "Bounding-box diagonal to which the mesh is scaled, in metres")
         .number_between(kMinDiagonal_m, kMaxDiagonal_m)
         .excludes(unit)
         .excludes(scale);
-    line.add_option("--up", words.up,
-                    "Axis of the mesh or scene that points up; y is turned to z, which is up for "
-                    "devices")
+    line.add_option(
+            "--up", words.up,
+            "Axis of the mesh or scene that points up; y is rotated to z, which is up for devices")
         .one_of({"y", "z"})
         .show_default();
-    line.add_flag("--center", options.placing.is_centered,
-                  "Move the middle of the box round the mesh, or all of a scene, to the origin");
-    line.begin_task("Inside and outside", "spm_build part.stl --keep-winding -o part.spm");
+    line.add_flag(
+        "--center", options.placing.is_centered,
+        "Move the centre of the bounding box of the mesh or of the whole scene to the origin");
+    line.begin_task("Orientation of faces", "spm_build part.stl --keep-winding -o part.spm");
     line.add_flag("--keep-winding", options.model.keeps_winding,
-                  "Leave closed pieces as they are that look inside out");
+                  "Keep the orientation of closed parts that are inside out");
     line.begin_task("Encoding", "spm_build part.stl --unit mm --position-bits 20 -o part.spm");
     line.add_option("--position-bits", options.model.position_bits,
-                    "Bits of a coordinate [16, more where the mesh has finer detail]")
+                    "Bits of a coordinate [default: 16, more for a mesh with finer detail]")
         .number_between(kMinPositionBits, kMaxPositionBits);
     line.add_option("--base-faces", options.model.base_faces,
-                    "Faces of the coarsest mesh, at most; more where pieces, holes or handles keep "
-                    "it from shrinking")
+                    "Maximum number of faces of the base mesh; more if parts, holes or handles "
+                    "keep it from shrinking")
         .number_between(1, kMaxBaseFaces)
         .show_default();
     line.add_option("--region-size", options.model.region_size_m,
-                    "Edge of a region in metres, rounded down to a power of two quanta")
+                    "Edge length of a region, rounded down to a power of two quanta, in metres "
+                    "[default: at most 16 regions along the longest axis]")
         .number_between(1e-12, 1e6);
-    line.add_option("--threads", options.model.threads, "Threads to work with")
-        .number_between(1, 1024)
-        .show_default();
+    line.add_option("--threads", options.model.threads,
+                    "Number of threads [default: the number of processors]")
+        .number_between(1, 1024);
     line.add_option("--memory-mib", options.model.memory_mib,
-                    "Refuse what needs more memory [what is available]")
+                    "Memory limit, in MiB; a mesh that needs more is refused [default: the "
+                    "available memory]")
         .integer_between(std::uint32_t{1}, std::uint32_t{1} << 30U);
     line.add_flag("--json", options.json, "Print the figures as one JSON object");
     line.add_log_options();
@@ -106,24 +110,23 @@ std::string check_together(const CommandLine& line, const Options& options)
     }
     if (options.input == "-" && !options.format)
     {
-        return "--format is required: standard input has no name that ends in its format";
+        return "--format is required: standard input has no file name extension";
     }
     if (!options.is_of_scene())
     {
         return options.output.ends_with(".spm")
                    ? ""
-                   : fmt::format("--output: '{}' is the name of no model; one ends in .spm",
-                                 options.output);
+                   : fmt::format("--output: '{}' must end in .spm", options.output);
     }
     for (const char* name : {"--unit", "--fit-diag"})
     {
         if (line.is_given(name))
         {
-            return fmt::format("{}: a glTF scene is in metres; --scale sizes it", name);
+            return fmt::format("{}: a glTF scene is in metres; use --scale instead", name);
         }
     }
     return options.output.ends_with(".spm")
-               ? "--output: a glTF scene needs a folder, which gets its models"
+               ? "--output: a glTF scene needs a folder for its models, not an .spm file"
                : "";
 }
 

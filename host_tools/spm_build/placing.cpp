@@ -26,7 +26,7 @@ void turn_y_up(Pose& pose)
     rotation = (Eigen::Quaterniond(upright) * rotation).normalized();
 }
 
-/// Middle of the boxes of all objects, each rotated with its object.
+/// Middle, in the world, of the boxes of all objects in their poses.
 Vec3 middle_of(std::span<const Eigen::AlignedBox3d> boxes, std::span<const PlacedModel> objects)
 {
     Eigen::AlignedBox3d all;
@@ -91,13 +91,13 @@ std::optional<Refusal> place_objects(const Placing& placing,
         const auto checked = checked_pose(object.pose);
         if (!checked)
         {
-            return Refusal{fmt::format(
-                "--scale: object '{}' would {}", object.name,
-                checked.error() == PoseRefusal::scale
-                    ? fmt::format("have a scale of {:.6g}; {} to {} is allowed", object.pose.scale,
-                                  kPoseScaleMin, kPoseScaleMax)
-                    : fmt::format("stand farther than {} m from the origin along an axis",
-                                  kPoseReachMax_m))};
+            return Refusal{
+                fmt::format("--scale: object '{}' would {}", object.name,
+                            checked.error() == PoseRefusal::scale
+                                ? fmt::format("have a scale of {:.6g}; {} to {} is allowed",
+                                              object.pose.scale, kPoseScaleMin, kPoseScaleMax)
+                                : fmt::format("lie farther than {} m from the origin along an axis",
+                                              kPoseReachMax_m))};
         }
         object.pose = checked.value();
     }

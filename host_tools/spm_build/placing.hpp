@@ -19,7 +19,8 @@ namespace tactus::spm_build
 /// Rotation, scale and translation of the input, in this order.
 struct Placing
 {
-    bool is_y_up{false}; ///< True if its y axis points up; z does then, as for devices.
+    /// True if the input's y axis points up; it becomes z, the up axis of devices.
+    bool is_y_up{false};
     double scale{1.0};
     bool is_centered{false}; ///< True if the middle of its box becomes the origin.
 };
@@ -27,9 +28,9 @@ struct Placing
 /// Rotates a mesh so that its y axis becomes z.
 void turn_y_up(TriangleMesh& mesh);
 
-/// Places the objects of a scene, whose models have these boxes; the middle is that of the objects'
-/// boxes. Adds a note about a translation. Refuses an object whose pose or scale would be out of
-/// range.
+/// Applies `placing` to the objects of a scene. `boxes` are those of the models, by
+/// PlacedModel::model. Centring moves the middle of all objects' boxes to the origin and adds a
+/// note. Refuses an object whose pose or scale would be out of range.
 [[nodiscard]] std::optional<Refusal> place_objects(const Placing& placing,
                                                    std::span<const Eigen::AlignedBox3d> boxes,
                                                    std::vector<PlacedModel>& objects,

@@ -35,14 +35,15 @@ ContentHash hash_of(const TriangleMesh& mesh)
     return content_hash(std::as_bytes(std::span(parts)));
 }
 
-/// A mesh that was read: its model, or the reason why it has none.
+/// Result of reading a mesh: the index of its model, or the reason why it has none.
 struct PlannedMesh
 {
     std::optional<std::size_t> model;
     std::string left_out;
 };
 
-/// A quarter of the allowed memory: while the list of corners grows, there are two copies.
+/// Maximum number of corners in SharedGrids: they take a quarter of the allowed memory, since a
+/// growing list exists twice.
 std::size_t corners_max(const ModelOptions& options)
 {
     return options.memory_mib
@@ -51,7 +52,7 @@ std::size_t corners_max(const ModelOptions& options)
                : SharedGrids::kCornersMax;
 }
 
-/// First model that each model meets.
+/// First model of each group, by model; see SharedGrids::first_of_each().
 Result<std::vector<std::size_t>, Refusal> find_groups(Scene& scene, const ScenePlan& plan,
                                                       const ModelOptions& options)
 {
@@ -84,7 +85,7 @@ Result<std::vector<std::size_t>, Refusal> find_groups(Scene& scene, const SceneP
     return shared.first_of_each();
 }
 
-/// Gives models that meet the finest of their steps.
+/// Sets the maximum step of models that meet to the finest of their steps.
 std::optional<Refusal> share_steps(Scene& scene, ScenePlan& plan, const fs::path& input,
                                    const ModelOptions& options)
 {
@@ -174,7 +175,7 @@ Result<ScenePlan, Refusal> plan_models(Scene& scene, const fs::path& input)
         }
         if (!object.mesh)
         {
-            return Refusal{fmt::format("{}: {} names its model already; only meshes are encoded",
+            return Refusal{fmt::format("{}: {} names a model already; only meshes are encoded",
                                        input.string(), object.place)};
         }
         const auto [use, is_first] = by_use.try_emplace(*object.mesh);
@@ -203,7 +204,7 @@ Result<ScenePlan, Refusal> plan_models(Scene& scene, const fs::path& input)
             }
             if (planned.model && !planned.left_out.empty())
             {
-                left_out.add(planned.left_out + "; these have no surface",
+                left_out.add(planned.left_out + "; they have no surface",
                              "parts of " + scene.mesh_place(*object.mesh));
             }
         }
@@ -221,7 +222,7 @@ Result<ScenePlan, Refusal> plan_models(Scene& scene, const fs::path& input)
     if (plan.scene.objects.empty())
     {
         return Refusal{
-            fmt::format("{}: nothing is left to touch: {}", input.string(), plan.notes.back())};
+            fmt::format("{}: no object is left to touch: {}", input.string(), plan.notes.back())};
     }
     plan.names = unique_names(plan.names);
     for (const std::string& name : plan.names)

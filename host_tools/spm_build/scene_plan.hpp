@@ -29,8 +29,10 @@ struct ScenePlan
     std::vector<Eigen::AlignedBox3d> boxes; ///< Box of each model's mesh.
     std::vector<std::size_t> faces;         ///< Number of faces of each model's mesh.
     std::vector<GridChoice> grids;          ///< Grid of each model.
-    std::vector<std::size_t> groups;        ///< First model that shares each model's grid.
-    /// Vertices of each model that others of its group may meet, relative to the grid's place.
+    /// First model of each model's group; a group shares one grid.
+    std::vector<std::size_t> groups;
+    /// Vertices of each model that other models of its group may meet, relative to its
+    /// GridChoice::place_m.
     std::vector<std::vector<Vec3>> borders_m;
     PlacedModels scene;
     std::vector<std::string> notes; ///< Notes on ignored content.
@@ -41,13 +43,14 @@ struct ScenePlan
 [[nodiscard]] Result<ScenePlan, Refusal> plan_models(Scene& scene,
                                                      const std::filesystem::path& input);
 
-/// Puts each model's grid through the world's origin, from the view of its first object, and gives
-/// models that meet the finest of their steps.
+/// Sets plan.grids: each model's grid contains the world's origin, seen from the model's first
+/// object. Models that meet get the finest of their steps as the maximum step.
 [[nodiscard]] std::optional<Refusal> choose_grids(Scene& scene, ScenePlan& plan,
                                                   const std::filesystem::path& input,
                                                   const ModelOptions& options);
 
-/// Boxes, in the mesh's frame, of the models that share a model's grid and may meet it.
+/// Boxes, in the frame of the model's mesh and extended by a step, of the models that share its
+/// grid and may meet it.
 [[nodiscard]] std::vector<Eigen::AlignedBox3d> boxes_beside(const ScenePlan& plan,
                                                             std::size_t model);
 

@@ -17,12 +17,13 @@ namespace tactus::spm_build
 namespace
 {
 
-/// Range of the usual sizes of touched models.
+/// Range of the usual diagonals of touched models.
 constexpr double kLeastUsual_m = 1e-3;
 constexpr double kMostUsual_m = 10.0;
-/// Maximum share of a terrain's least extent in its largest; a mask or a relief has more.
+/// Maximum ratio of a terrain's least extent to its largest; a mask or a relief has a higher ratio.
 constexpr double kTerrainRelief = 0.3;
-/// Diagonals between model and origin beyond which a user who starts there finds nothing.
+/// Distance from the origin, in diagonals of the model, beyond which a user who starts at the
+/// origin finds nothing.
 constexpr double kFarDiagonals = 10.0;
 
 bool is_usual(double diagonal_m)
@@ -30,7 +31,8 @@ bool is_usual(double diagonal_m)
     return diagonal_m >= kLeastUsual_m && diagonal_m <= kMostUsual_m;
 }
 
-/// Values of --unit, such as "mm (0.39 m) or cm (3.9 m)"; empty: none makes the size usual.
+/// Values of --unit that make the size usual, such as "mm (0.39 m) or cm (3.9 m)"; empty if there
+/// are none.
 std::string better_units(const ModelPlace& place)
 {
     std::vector<std::string> ways;
@@ -79,24 +81,23 @@ std::vector<std::string> size_notes(const TriangleMesh& mesh, const ModelPlace& 
     if (!has_own_size && !is_plausible)
     {
         const std::string units = better_units(place);
-        notes.push_back(
-            units.empty()
-                ? fmt::format("the model is {:.6g} m across; if that is not its size, give --unit, "
-                              "--scale or --fit-diag",
-                              place.diagonal_m)
-                : fmt::format("the model is {:.6g} m across; if that is not its size, give --unit "
-                              "{}, --scale or --fit-diag",
-                              place.diagonal_m, units));
+        notes.push_back(units.empty() ? fmt::format("the model is {:.6g} m across; if this size is "
+                                                    "wrong, set --unit, --scale or --fit-diag",
+                                                    place.diagonal_m)
+                                      : fmt::format("the model is {:.6g} m across; if this size is "
+                                                    "wrong, set --unit {}, --scale or --fit-diag",
+                                                    place.diagonal_m, units));
     }
-    double nearest_m = 0.0; // Distance along the axis on which it is farthest from the box.
+    // Distance of the origin from the box, along the axis on which it is greatest.
+    double nearest_m = 0.0;
     for (const double low : place.low_corner_m)
     {
         nearest_m = std::max({nearest_m, low, -(low + place.diagonal_m)});
     }
     if (nearest_m > kFarDiagonals * place.diagonal_m)
     {
-        notes.push_back(fmt::format("the model stands {:.6g} m from its origin, {:.0f} times its "
-                                    "size; --center puts it there",
+        notes.push_back(fmt::format("the model lies {:.6g} m from its origin, {:.0f} times its "
+                                    "size; --center moves the model to the origin",
                                     nearest_m, nearest_m / place.diagonal_m));
     }
     return notes;

@@ -24,7 +24,8 @@ struct ModelPlace
 [[nodiscard]] bool is_like_terrain(const TriangleMesh& mesh);
 
 /// Notes about an unusual model size, with the units that would make it usual, and about a model
-/// far from the origin. `has_own_size`: a unit or a diagonal was given.
+/// far from the origin. `has_own_size`: the user gave a unit or a diagonal, so the size is not
+/// questioned.
 [[nodiscard]] std::vector<std::string> size_notes(const TriangleMesh& mesh, const ModelPlace& place,
                                                   bool has_own_size);
 

@@ -46,25 +46,22 @@ std::string bounds_text(const ModelHeader& header)
     return text + " m";
 }
 
-constexpr const char* kRule = "--extract writes the coarsest mesh that meets what is asked for. "
-                              "Inside --region every face of "
-                              "the source is there; outside, the mesh is as coarse as --error "
-                              "allows, or --faces, what matters "
-                              "most first. --faces counts the whole mesh, region included; a "
-                              "region or a base mesh that needs "
-                              "more faces gets them, and the region is then surrounded by the "
-                              "coarsest mesh. --error 0 is the "
-                              "whole source.";
+constexpr const char* kRule =
+    "--extract writes the coarsest mesh that meets the requests. Inside --region the mesh has "
+    "every face of the source. Outside, the mesh is as coarse as --error allows, or is refined up "
+    "to --faces, with the most important vertex splits first. --faces counts the whole mesh with "
+    "the region. If a region or a base mesh needs more faces, the mesh has these faces, and is the "
+    "coarsest one outside the region. --error 0 gives the whole source.";
 
 } // namespace
 
 void Extractor::declare_options(CommandLine& line)
 {
-    line.begin_task("A mesh", "spm_inspect ball.spm --extract --error 0.0005 -o ball.stl");
+    line.begin_task("Extracted mesh", "spm_inspect ball.spm --extract --error 0.0005 -o ball.stl");
     const auto extract = line.add_flag(
-        "--extract", wanted_, "Write a mesh, coarse or fine as --faces, --error, --region ask");
+        "--extract", wanted_, "Write a mesh as fine as --faces, --error and --region request");
     const auto faces =
-        line.add_option("--faces", request_.faces, "Faces of the extracted mesh, at most")
+        line.add_option("--faces", request_.faces, "Maximum number of faces of the extracted mesh")
             .number_between(1, std::numeric_limits<std::uint32_t>::max())
             .needs(extract);
     line.add_option("--error", request_.error_m,
@@ -73,8 +70,8 @@ void Extractor::declare_options(CommandLine& line)
         .excludes(faces)
         .needs(extract);
     line.add_option("--region", region_,
-                    "Full resolution in here: sphere:x,y,z,r or box:x0,y0,z0,x1,y1,z1, in metres "
-                    "and the source's frame")
+                    "Zone of full resolution: sphere:x,y,z,r or box:x0,y0,z0,x1,y1,z1, in metres, "
+                    "in the source's frame")
         .check(fault_in_zone)
         .needs(extract);
     const auto output =
@@ -104,7 +101,8 @@ std::optional<std::string> Extractor::run(const DecodedModel& model) const
     const Extraction extraction = extract(model, request);
     if (request.zone && extraction.zone_faces == 0)
     {
-        return "--region: meets nothing of the model, which lies in " + bounds_text(model.header());
+        return "--region: the region meets no face of the model, whose bounds are " +
+               bounds_text(model.header());
     }
     if (const auto written = write_mesh(output_, extraction.mesh); !written)
     {

@@ -31,8 +31,8 @@ public:
 
 private:
     bool wanted_{false};
-    ExtractRequest request_; ///< Request, except the zone.
-    std::string region_;     ///< Zone as text; empty: none.
+    ExtractRequest request_; ///< Request; its zone is not set, see `region_`.
+    std::string region_;     ///< Zone as text; empty if there is none.
     std::string output_;
 };
 

@@ -7,6 +7,7 @@
 #include "platform/program/command_line.hpp"
 #include "platform/program/progress.hpp"
 #include "platform/program/run_program.hpp"
+#include "transport/base/counted.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
 
@@ -206,7 +207,7 @@ int report_damage(const CommandLine& line, const std::vector<std::string>& damag
     }
     if (damage.size() > kShown)
     {
-        line.fail(fmt::format("and {} more damaged pieces", damage.size() - kShown));
+        line.fail("and " + counted(damage.size() - kShown, "more damaged piece"));
     }
     return kExitFailed;
 }
@@ -275,6 +276,6 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    return tactus::run_program("spm_inspect", "about 150 bytes a face are needed",
+    return tactus::run_program("spm_inspect", "about 150 bytes per face are needed",
                                [&] { return tactus::spm_inspect::run(argc, argv); });
 }

@@ -14,16 +14,16 @@ namespace
 void declare_options(CommandLine& line, Options& options)
 {
     line.add_version("spm_inspect " TACTUS_VERSION);
-    line.begin_task("What is printed", "spm_inspect ball.spm --distances points.txt");
-    line.add_option("FILE", options.file, "Model to look at (.spm)").required();
-    line.add_flag("--json", options.json, "Print as one JSON object");
+    line.begin_task("Output", "spm_inspect ball.spm --distances points.txt");
+    line.add_option("FILE", options.file, "Model to inspect (.spm)").required();
+    line.add_flag("--json", options.json, "Print the output as one JSON object");
     const auto regions = line.add_flag("--regions", options.regions, "List the occupied regions");
     const auto records = line.add_flag(
         "--records", options.records,
-        "List the records that split vertices: whose vertex from which, how deep, where");
+        "List the records (vertex splits) with new vertex, parent vertex, depth and position");
     line.add_option("--distances", options.points,
-                    "Print, instead, how far the points of this file are from the surface: lines "
-                    "x y z in metres and the source's frame; - is standard input")
+                    "File of points whose distances from the surface are printed instead: lines x "
+                    "y z in metres, in the source's frame; - is standard input")
         .excludes(regions)
         .excludes(records);
     options.extractor.declare_options(line);
@@ -42,7 +42,7 @@ std::string check_together(const Options& options)
         return *reason;
     }
     return !options.points.empty() && options.extractor.is_wanted()
-               ? "--distances and --extract: one at a time"
+               ? "--distances and --extract can't be combined"
                : "";
 }
 

@@ -22,7 +22,7 @@ struct Options
     bool json{false};
     bool regions{false};
     bool records{false};
-    std::string points; ///< File of points for distances; empty: none.
+    std::string points; ///< File of points for distances; empty if there is none.
     Extractor extractor;
 };
 

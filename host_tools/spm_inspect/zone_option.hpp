@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// Limits of a zone's numbers, in metres.
+/// Limits of a zone's coordinates and radius, in metres.
 inline constexpr double kMaxZoneCoordinate_m = 1e9;
 inline constexpr double kMinZoneRadius_m = 1e-9;
 

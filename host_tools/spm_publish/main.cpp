@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/scene/placed_models.hpp"
-#include "host_tools/spm_publish/host_metrics.hpp"
 #include "host_tools/spm_publish/namesakes.hpp"
 #include "host_tools/spm_publish/options.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
+#include "host_tools/spm_publish/server_metrics.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
 #include "host_tools/spm_publish/watch.hpp"
 #include "platform/program/command_line.hpp"
@@ -13,7 +13,7 @@
 #include "transport/base/counted.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/content_hash.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <fmt/format.h>
@@ -36,13 +36,13 @@ namespace tactus::spm_publish
 namespace
 {
 
-/// An object that may be shown.
+/// An object that the server may show.
 struct Prop
 {
-    ShownObject shown; ///< Object; its model's hash is set once the models are open.
+    ShownObject shown; ///< Object; the hash of its model is set when the models are open.
     std::size_t model{0};
     bool is_there_from_start{false};
-    std::optional<std::uint32_t> number{}; ///< Number while it is shown.
+    std::optional<std::uint32_t> number{}; ///< Number while shown; none otherwise.
 };
 
 /// Optional parts of the server.
@@ -50,13 +50,13 @@ struct Extras
 {
     std::vector<Prop> props;
     std::optional<PosePlayer> player;
-    std::unique_ptr<dds::TelemetryReader> controllers; ///< Present only if monitoring is requested.
+    std::unique_ptr<dds::TelemetryReader> controllers; ///< Null without --watch and --metrics.
     std::optional<Watch> watch;
-    std::optional<HostMetrics> metrics;
-    Namesakes* namesakes{nullptr}; ///< Null if the search for them is impossible.
+    std::optional<ServerMetrics> metrics;
+    Namesakes* namesakes{nullptr}; ///< Null if other servers cannot be found.
 };
 
-/// Replaces a scene's file by its models, and returns its objects.
+/// Replaces the scene in options.files by its models, and returns the scene's objects.
 Result<std::vector<Prop>, Refusal> open_scene(Options& options)
 {
     const auto scene = read_placed_models(options.files.front());
@@ -81,7 +81,7 @@ Result<std::vector<Prop>, Refusal> open_scene(Options& options)
     return props;
 }
 
-/// Objects without a scene: each model may be shown once, under its own name.
+/// Objects if no scene is given: one for each model, with its name.
 std::vector<Prop> props_of(const std::vector<std::string>& names)
 {
     std::vector<Prop> props;
@@ -92,7 +92,7 @@ std::vector<Prop> props_of(const std::vector<std::string>& names)
     return props;
 }
 
-/// Reads all chunks; the rest was checked when the file was opened.
+/// Reads all chunks and returns the first fault. ModelStore::open() has checked the rest.
 std::optional<Refusal> find_damage(const ModelStore& store)
 {
     std::vector<std::byte> coded;
@@ -125,10 +125,10 @@ Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& opt
     return models;
 }
 
-void print_models(ServingReport& report, dds::DdsHost& host, const std::string& scene,
+void print_models(ServingReport& report, dds::DdsServer& server, const std::string& scene,
                   std::uint32_t domain)
 {
-    for (const dds::ModelPieces& model : host.models())
+    for (const dds::ModelPieces& model : server.models())
     {
         const HeaderFields& fields = model.store().header().fields();
         report.print_line(fmt::format("serving '{}' hash {}: {} faces, {} bytes, from {}",
@@ -136,7 +136,7 @@ void print_models(ServingReport& report, dds::DdsHost& host, const std::string& 
                                       fields.source_faces, fields.file_bytes,
                                       model.store().path().string()));
     }
-    if (const std::size_t objects = host.objects().objects(); objects > 0)
+    if (const std::size_t objects = server.objects().objects(); objects > 0)
     {
         report.print_line(fmt::format("showing {}{}", counted(objects, "object"),
                                       scene.empty() ? "" : fmt::format(" as scene '{}'", scene)));
@@ -144,7 +144,7 @@ void print_models(ServingReport& report, dds::DdsHost& host, const std::string& 
     report.print_line(fmt::format("ready on DDS domain {}; end with Ctrl-C", domain));
 }
 
-/// Lines of the pose file; empty if none is given.
+/// Lines of the pose file; empty without a pose file.
 Result<std::vector<PoseLine>, Refusal> read_poses(const Options& options,
                                                   const std::vector<ScriptedObject>& objects)
 {
@@ -163,18 +163,18 @@ Result<std::vector<PoseLine>, Refusal> read_poses(const Options& options,
                : std::move(lines);
 }
 
-Result<Extras, Refusal> make_extras(const Options& options, dds::DdsHost& host,
+Result<Extras, Refusal> make_extras(const Options& options, dds::DdsServer& server,
                                     std::vector<Prop> props, std::vector<PoseLine> lines)
 {
     Extras extras;
     for (Prop& prop : props)
     {
-        prop.shown.model = host.models()[prop.model].store().hash();
+        prop.shown.model = server.models()[prop.model].store().hash();
         if (!prop.is_there_from_start)
         {
             continue;
         }
-        const auto number = host.objects().show(prop.shown);
+        const auto number = server.objects().show(prop.shown);
         if (!number)
         {
             return number.error();
@@ -188,7 +188,7 @@ Result<Extras, Refusal> make_extras(const Options& options, dds::DdsHost& host,
     extras.props = std::move(props);
     if (options.watch || options.metrics_port)
     {
-        auto reader = dds::TelemetryReader::create(host.domain());
+        auto reader = dds::TelemetryReader::create(server.domain());
         if (!reader)
         {
             return reader.error();
@@ -202,28 +202,27 @@ Result<Extras, Refusal> make_extras(const Options& options, dds::DdsHost& host,
     return extras;
 }
 
-/// Starts the metrics if --metrics is given, and prints their address.
-std::optional<Refusal> start_metrics(const Options& options, dds::DdsHost& host, Extras& extras,
+/// Starts the metrics page and prints its address, if --metrics is given.
+std::optional<Refusal> start_metrics(const Options& options, dds::DdsServer& server, Extras& extras,
                                      ServingReport& report)
 {
     if (!options.metrics_port)
     {
         return std::nullopt;
     }
-    auto server =
+    auto page =
         web::MetricsServer::start(static_cast<std::uint16_t>(*options.metrics_port), "--metrics");
-    if (!server)
+    if (!page)
     {
-        return server.error();
+        return page.error();
     }
-    report.print_line(
-        fmt::format("metrics on http://127.0.0.1:{}/metrics", server.value()->port()));
-    extras.metrics.emplace(std::move(server).value());
-    extras.metrics->update(host, *extras.controllers); // Metrics exist before the first request.
+    report.print_line(fmt::format("metrics on http://127.0.0.1:{}/metrics", page.value()->port()));
+    extras.metrics.emplace(std::move(page).value());
+    extras.metrics->update(server, *extras.controllers); // The first request needs metrics.
     return std::nullopt;
 }
 
-/// Maximum wait of the server: until a pose is due.
+/// Longest wait for requests: until the next pose, from 1 to 50 ms.
 std::chrono::milliseconds longest_wait(const Extras& extras, double now_s)
 {
     constexpr std::chrono::milliseconds least{1};
@@ -259,7 +258,7 @@ void stand(Prop& prop, const std::optional<Pose>& pose, dds::ObjectPublisher& ob
     {
         prop.shown.pose = *pose;
         const auto number = objects.show(prop.shown);
-        TACTUS_ASSERT(number.has_value()); // There are no more props than a server may show.
+        TACTUS_ASSERT(number.has_value()); // The number of props was checked.
         prop.number = number.value();
     }
     else if (prop.number)
@@ -269,7 +268,7 @@ void stand(Prop& prop, const std::optional<Pose>& pose, dds::ObjectPublisher& ob
     }
 }
 
-/// Plays the lines that are due: objects are added, moved, changed and removed.
+/// Plays the lines of the pose file that are due.
 void play(Extras& extras, dds::ObjectPublisher& objects, double now_s)
 {
     for (const PoseLine& line : extras.player->take_due(now_s))
@@ -286,7 +285,7 @@ void play(Extras& extras, dds::ObjectPublisher& objects, double now_s)
     }
 }
 
-void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
+void serve(dds::DdsServer& server, ServingReport& report, Extras& extras,
            const std::optional<double>& seconds)
 {
     using Clock = std::chrono::steady_clock;
@@ -294,29 +293,29 @@ void serve(dds::DdsHost& host, ServingReport& report, Extras& extras,
     const auto now_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
     while (!is_stop_requested() && !(seconds && now_s() >= *seconds))
     {
-        host.wait(longest_wait(extras, now_s()));
+        server.wait(longest_wait(extras, now_s()));
         if (extras.player)
         {
-            play(extras, host.objects(), now_s());
+            play(extras, server.objects(), now_s());
         }
-        host.step();
+        server.step();
         if (extras.controllers != nullptr)
         {
             extras.controllers->poll();
         }
         if (extras.watch)
         {
-            extras.watch->update(*extras.controllers, host, report);
+            extras.watch->update(*extras.controllers, server, report);
         }
         if (extras.metrics)
         {
-            extras.metrics->update(host, *extras.controllers);
+            extras.metrics->update(server, *extras.controllers);
         }
         if (extras.namesakes != nullptr)
         {
             extras.namesakes->update();
         }
-        report.update(host);
+        report.update(server);
     }
 }
 
@@ -368,30 +367,30 @@ int run(int argc, char** argv)
     ServingReport report;
     const Log warn = [&report](const std::string& text)
     { report.print_line(text, LogLevel::warning); };
-    auto host = dds::DdsHost::create(options.domain, std::move(models).value(), warn, options.scene,
-                                     dds::Party::both);
-    if (!host)
+    auto server = dds::DdsServer::create(options.domain, std::move(models).value(), warn,
+                                         options.scene, dds::Party::both);
+    if (!server)
     {
-        return line.fail(host.error().text);
+        return line.fail(server.error().text);
     }
-    auto namesakes = Namesakes::create(*host.value(), options.scene, warn);
-    if (!namesakes) // A certificate may forbid it.
+    auto namesakes = Namesakes::create(*server.value(), options.scene, warn);
+    if (!namesakes) // The permissions of a certificate may forbid it.
     {
-        warn("other servers of these names are not looked for: " + namesakes.error().text);
+        warn("other servers with these names can't be detected: " + namesakes.error().text);
     }
-    auto extras = make_extras(options, *host.value(), std::move(props), std::move(poses).value());
+    auto extras = make_extras(options, *server.value(), std::move(props), std::move(poses).value());
     if (!extras)
     {
         return line.fail(extras.error().text);
     }
-    if (const auto refusal = start_metrics(options, *host.value(), extras.value(), report))
+    if (const auto refusal = start_metrics(options, *server.value(), extras.value(), report))
     {
         return line.fail(refusal->text);
     }
-    print_models(report, *host.value(), options.scene, options.domain);
+    print_models(report, *server.value(), options.scene, options.domain);
     extras.value().namesakes = namesakes ? &namesakes.value() : nullptr;
-    serve(*host.value(), report, extras.value(), options.seconds);
-    const auto counters = host.value()->counters();
+    serve(*server.value(), report, extras.value(), options.seconds);
+    const auto counters = server.value()->counters();
     report.print_line(fmt::format("ended; {} chunks, {:.1f} KB sent", counters.pieces_sent,
                                   static_cast<double>(counters.bytes_sent) / 1e3));
     return kExitDone;

@@ -11,25 +11,30 @@ namespace
 {
 
 constexpr std::chrono::milliseconds kLookEvery{100};
-/// Maximum number of log lines, so that many unknown servers do not fill the log.
+/// Maximum number of logged offers, so that many unknown servers do not fill the log.
 constexpr std::size_t kMaxTold = 64;
 
 } // namespace
 
-Result<Namesakes, Refusal> Namesakes::create(const dds::DdsHost& host, std::string scene, Log log)
+Result<Namesakes, Refusal> Namesakes::create(const dds::DdsServer& server, std::string scene,
+                                             Log log)
 {
-    auto catalogue = dds::Catalogue::create(host.domain(), log);
+    auto catalogue = dds::Catalogue::create(server.domain(), log);
     if (!catalogue)
     {
         return catalogue.error();
     }
-    return Namesakes(host, std::move(scene), std::move(catalogue).value(), std::move(log));
+    return Namesakes(server, std::move(scene), std::move(catalogue).value(), std::move(log));
 }
 
-Namesakes::Namesakes(const dds::DdsHost& host, std::string scene, dds::Catalogue catalogue, Log log)
-    : host_(host), scene_(std::move(scene)), catalogue_(std::move(catalogue)), log_(std::move(log))
+Namesakes::Namesakes(const dds::DdsServer& server, std::string scene, dds::Catalogue catalogue,
+                     Log log)
+    : server_(server)
+    , scene_(std::move(scene))
+    , catalogue_(std::move(catalogue))
+    , log_(std::move(log))
 {
-    for (const dds::ModelPieces& model : host.models())
+    for (const dds::ModelPieces& model : server.models())
     {
         catalogue_.ask_for({model.model().name});
     }
@@ -52,7 +57,7 @@ void Namesakes::update()
     {
         return;
     }
-    for (const dds::ModelPieces& model : host_.models())
+    for (const dds::ModelPieces& model : server_.models())
     {
         const std::string& name = model.model().name;
         for (const dds::Catalogue::Offer* other : catalogue_.servers_of({name}))
@@ -74,12 +79,12 @@ void Namesakes::update()
 void Namesakes::look_at(const dds::Catalogue::Offer& other, const std::string& name,
                         const std::string& what)
 {
-    const bool is_ours = other.host_epoch == host_.epoch();
-    if (!is_ours && told_.size() < kMaxTold && told_.emplace(other.host_epoch, what).second)
+    const bool is_ours = other.server_epoch == server_.epoch();
+    if (!is_ours && told_.size() < kMaxTold && told_.emplace(other.server_epoch, what).second)
     {
-        log_.write(fmt::format("warning: {} by {} as well; a controller follows the one that "
-                               "answers first, {}@SERVER chooses",
-                               what, catalogue_.participants().name_of(other.host), name));
+        log_.write(fmt::format("warning: {} by {} as well; a controller follows the server that "
+                               "answers first; choose a server with {}@SERVER",
+                               what, catalogue_.participants().name_of(other.server), name));
     }
 }
 

@@ -5,7 +5,7 @@
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/dds/catalogue.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/log.hpp"
 
 #include <chrono>
@@ -17,33 +17,33 @@
 namespace tactus
 {
 
-/// Finds other servers on the domain that offer a model or a scene under one of our names, and logs
-/// each: a controller takes the one that answers first.
+/// Finds other servers on the domain that offer a model or scene under a name of this server, and
+/// logs each. A controller would take the server that answers first.
 class Namesakes
 {
 public:
-    /// The host must outlive it and be able to find others: Party::both, or the user's
-    /// configuration.
-    [[nodiscard]] static Result<Namesakes, Refusal> create(const dds::DdsHost& host,
+    /// `server` must outlive the result, and must be able to find other servers: Party::both, or a
+    /// configuration of the user.
+    [[nodiscard]] static Result<Namesakes, Refusal> create(const dds::DdsServer& server,
                                                            std::string scene, Log log);
 
-    /// Searches if due. Call it often.
+    /// Searches if 100 ms have passed. Call it often.
     void update();
 
 private:
     using Clock = std::chrono::steady_clock;
-    Namesakes(const dds::DdsHost& host, std::string scene, dds::Catalogue catalogue, Log log);
+    Namesakes(const dds::DdsServer& server, std::string scene, dds::Catalogue catalogue, Log log);
 
     void look_at(const dds::Catalogue::Offer& other, const std::string& name,
                  const std::string& what);
 
-    const dds::DdsHost& host_;
+    const dds::DdsServer& server_;
     std::string scene_;
     dds::Catalogue catalogue_;
     RateLimitedLog log_;
     std::uint64_t seen_{0};
     Clock::time_point looked_{};
-    /// Server and name of the logged offers.
+    /// Epoch of the server and name of each offer that was logged.
     std::set<std::pair<std::uint64_t, std::string>> told_;
 };
 

@@ -26,49 +26,52 @@ namespace
 void declare_options(CommandLine& line, Options& options)
 {
     line.add_version("spm_publish " TACTUS_VERSION);
-    line.begin_task("What is served", "spm_publish ball.spm --name toy --domain 7");
-    line.add_option("FILE", options.files,
-                    "Models to serve (.spm), or one scene (.gltf, .glb) whose objects name theirs")
+    line.begin_task("Models and names", "spm_publish ball.spm --name toy --domain 7");
+    line.add_option(
+            "FILE", options.files,
+            "Models to serve (.spm), or one scene (.gltf, .glb) whose objects name their models")
         .required();
-    line.add_option("--name", options.names,
-                    "Name of the first model, of the second, ...; without it the file's stem")
+    line.add_option(
+            "--name", options.names,
+            "Names of the first model, of the second, ... [default: each file's name without .spm]")
         .repeatable_with_more();
     line.add_option("--scene", options.scene,
-                    "Name under which controllers find all objects together (hrtc --scene); "
-                    "without it the scene file's stem");
+                    "Name of the scene of all objects, for hrtc --scene [default: the scene file's "
+                    "name without .gltf or .glb]");
     line.add_option("--domain", options.domain, "DDS domain")
         .integer_between(std::uint32_t{0}, dds::kMaxDomain)
         .show_default();
     line.begin_task("The run", "spm_publish ball.spm --watch --seconds 60");
-    line.add_option("--seconds,--duration", options.seconds, "End by itself after this long")
+    line.add_option("--seconds,--duration", options.seconds,
+                    "Duration of the run, in seconds [default: no limit]")
         .number_between(0.1, 1e9);
-    line.add_flag(
-        "--watch", options.watch,
-        "Print each second what each controller on the domain does, what this host sends to "
-        "each, and of whom something was refused");
+    line.add_flag("--watch", options.watch,
+                  "Print each second the state of each controller in the domain, the data sent to "
+                  "each, and the participants whose data was refused");
     line.add_option("--metrics", options.metrics_port,
-                    "Port of 127.0.0.1 for Prometheus, 0: any that is free: /metrics tells what is "
-                    "served and what each controller on the domain does")
+                    "Port of 127.0.0.1 for Prometheus; 0 selects a free port. /metrics reports the "
+                    "served models and the state of each controller in the domain [default: none]")
         .integer_between(std::uint32_t{0}, std::uint32_t{65'535});
-    line.begin_task("Objects that move", "spm_publish ball.spm --poses path.txt --poses-loop");
-    line.add_option("--poses", options.poses_path,
-                    fmt::format("Move objects as this text file says, in real time: lines {} in "
-                                "order of time, in s and m, with a scene's object or the name of a "
-                                "model and a unit quaternion; without SCALE the object keeps the "
-                                "one it has; '{}' in place of the numbers removes one, '{}' and "
-                                "then {} gives it another material; # begins a "
-                                "comment",
-                                kPoseLineForm, kGoneWord, kMaterialWord, kMaterialKeysForm));
+    line.begin_task("Moving objects", "spm_publish ball.spm --poses path.txt --poses-loop");
+    line.add_option(
+        "--poses", options.poses_path,
+        fmt::format(
+            "Text file of poses that move objects in real time: lines {} in order of time, in s "
+            "and m, with a unit quaternion. NAME is an object of the scene or a model. Without "
+            "SCALE the object keeps its scale. '{}' in place of the numbers removes the object. "
+            "'{}' and then {} sets another material. # begins a comment",
+            kPoseLineForm, kGoneWord, kMaterialWord, kMaterialKeysForm));
     line.add_flag("--poses-loop", options.poses_loop,
-                  "Begin the file anew at the time of its last line, again and again");
+                  "Repeat the file; each repetition begins at the time of the last line");
     line.add_option("--poses-rate", options.poses_rate_hz,
-                    "So many poses a second between the lines of an object, evenly [none: an "
-                    "object stands still between its lines]")
+                    "Rate of interpolated poses between the lines of an object, in poses a second "
+                    "[default: none, an object stands still between its lines]")
         .number_between(kPosesRateMin_hz, kPosesRateMax_hz);
     line.add_log_options();
 }
 
-/// Fault of the files: no models, or options that a scene does not take; empty if there is none.
+/// Fault of the file arguments: none, or an option that does not apply to a scene; empty if
+/// correct.
 std::string check_files(const Options& options)
 {
     for (const std::string& file : options.files)
@@ -82,19 +85,19 @@ std::string check_files(const Options& options)
     {
         const auto other = std::ranges::find_if_not(options.files, has_scene_extension);
         return options.names.empty() && other != options.files.end()
-                   ? fmt::format("FILE: a scene is served alone; another one serves {0}: "
+                   ? fmt::format("FILE: a scene is served alone; serve {0} by another program: "
                                  "'spm_publish {0}{1}'",
                                  printable(*other),
                                  options.domain == 0 ? ""
                                                      : fmt::format(" --domain {}", options.domain))
-                   : fmt::format("{}: a scene is served alone, its models under the names of their "
-                                 "files",
+                   : fmt::format("{}: a scene is served alone, and its models have the names of "
+                                 "their files",
                                  options.names.empty() ? "FILE" : "--name");
     }
     return "";
 }
 
-/// Sets the names; returns the fault, or empty.
+/// Sets the names of the models or of the scene; returns the fault, or an empty text.
 std::string take_names(Options& options)
 {
     if (options.has_scene)
@@ -103,7 +106,7 @@ std::string take_names(Options& options)
         {
             options.scene = std::filesystem::path(options.files.front()).stem().string();
         }
-        return ""; // Its models are known once it is read.
+        return ""; // The names of its models come from the scene's file.
     }
     auto names = choose_names(options.files, options.names);
     if (!names)
@@ -114,7 +117,7 @@ std::string take_names(Options& options)
     return "";
 }
 
-/// Fault of a combination of options; empty if there is none.
+/// Fault of a combination of options; empty if there is none. Sets the names.
 std::string check_together(Options& options)
 {
     options.has_scene = std::ranges::any_of(options.files, has_scene_extension);
@@ -158,7 +161,7 @@ Result<std::vector<std::string>, Refusal> choose_names(std::span<const std::stri
         {
             return Refusal{fmt::format(
                 "{} '{}' is not {}{}", is_given ? "--name" : "the stem of '" + file + "',",
-                printable(name), kNameForm, is_given ? "" : "; give one with --name")};
+                printable(name), kNameForm, is_given ? "" : "; set a name with --name")};
         }
         for (std::size_t other = 0; other < i; ++other)
         {

@@ -27,7 +27,7 @@ constexpr std::size_t kFieldsMin = 9;
 constexpr std::size_t kFieldsMax = 10;
 constexpr std::string_view kSpaces = " \t";
 
-/// Fields of a line, up to one more than allowed, so that an excess is detected.
+/// Fields of a line; at most one more than allowed, which shows an excess.
 std::vector<std::string_view> fields_of(std::string_view line)
 {
     std::vector<std::string_view> fields;
@@ -56,11 +56,11 @@ std::string refusal_text(PoseRefusal refusal)
     case PoseRefusal::scale:
         return fmt::format("SCALE must be {} to {}", kPoseScaleMin, kPoseScaleMax);
     default:
-        return "is no pose";
+        return "the pose is invalid";
     }
 }
 
-/// Pose of eight numbers: translation (3), rotation (4), and the optional scale.
+/// Parses translation (3 numbers), rotation (4) and scale, which may be missing: `scale`.
 Result<Pose, Refusal> parse_pose(std::span<const std::string_view> fields, double scale)
 {
     std::array<double, 8> numbers{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, scale};
@@ -100,7 +100,7 @@ Pose pose_between(const Pose& from, const Pose& to, double share)
     return pose;
 }
 
-/// First names of the list, for a message about an unknown one.
+/// First 8 names of the objects, for a message about an unknown name.
 std::string names_of(std::span<const ScriptedObject> objects)
 {
     constexpr std::size_t kNamed = 8;
@@ -113,7 +113,7 @@ std::string names_of(std::span<const ScriptedObject> objects)
                                    : names;
 }
 
-/// Reads one line. `objects` have the scales at that time.
+/// Parses one line. `objects` have the scales at the time of the line.
 Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<ScriptedObject> objects)
 {
     const std::vector<std::string_view> fields = fields_of(text);
@@ -121,13 +121,13 @@ Result<PoseLine, Refusal> parse_line(std::string_view text, std::span<ScriptedOb
     const bool feels = fields.size() == 4 && fields[2] == kMaterialWord;
     if (!goes && !feels && (fields.size() < kFieldsMin || fields.size() > kFieldsMax))
     {
-        return Refusal{fmt::format("is not {} nor {}", kPoseLineForm, kMaterialLineForm)};
+        return Refusal{fmt::format("is neither {} nor {}", kPoseLineForm, kMaterialLineForm)};
     }
     const std::optional<double> time_s = parse_number(fields[0]);
     if (!time_s || *time_s < 0.0 || *time_s > kPoseTimeMax_s)
     {
         return Refusal{
-            fmt::format("time '{}' is not 0 to {} s", printable(fields[0]), kPoseTimeMax_s)};
+            fmt::format("time '{}' is not in 0 .. {} s", printable(fields[0]), kPoseTimeMax_s)};
     }
     const auto object = std::ranges::find(objects, fields[1], &ScriptedObject::name);
     if (object == objects.end())
@@ -182,15 +182,15 @@ Result<std::vector<PoseLine>, Refusal> parse_pose_lines(std::string_view text,
         }
         if (!lines.empty() && parsed.value().time_s < lines.back().time_s)
         {
-            return Refusal{fmt::format("line {}: time {} s is before {} s of the line "
-                                       "before",
-                                       number, parsed.value().time_s, lines.back().time_s)};
+            return Refusal{
+                fmt::format("line {}: time {} s is before {} s, the time of the previous line",
+                            number, parsed.value().time_s, lines.back().time_s)};
         }
         lines.push_back(parsed.value());
     }
     if (lines.empty())
     {
-        return Refusal{fmt::format("holds no line {}", kPoseLineForm)};
+        return Refusal{fmt::format("has no line {}", kPoseLineForm)};
     }
     return lines;
 }
@@ -235,19 +235,19 @@ Result<std::vector<PoseLine>, Refusal> interpolated(std::span<const PoseLine> li
     std::vector<const PoseLine*> before(objects, nullptr);
     for (const PoseLine& line : lines)
     {
-        // A change of material is no motion.
+        // Lines with a material do not end a motion.
         const PoseLine* last = line.material ? nullptr : std::exchange(before[line.object], &line);
         const bool is_between = last != nullptr && last->pose && line.pose;
         const double steps = is_between ? std::floor((line.time_s - last->time_s) * rate_hz) : 0.0;
         if (static_cast<double>(all.size()) + steps >= static_cast<double>(kInterpolatedLinesMax))
         {
-            return Refusal{fmt::format("--poses-rate: {} poses a second are more than {} in all",
+            return Refusal{fmt::format("--poses-rate: {} poses a second give more than {} poses",
                                        rate_hz, kInterpolatedLinesMax)};
         }
         for (double step = 1.0; step <= steps; ++step)
         {
             const double time_s = last->time_s + step / rate_hz;
-            if (time_s < line.time_s) // No pose next to the line itself.
+            if (time_s < line.time_s) // None at the time of the line itself.
             {
                 const double share = (time_s - last->time_s) / (line.time_s - last->time_s);
                 all.push_back(
@@ -270,11 +270,11 @@ PosePlayer::PosePlayer(std::vector<PoseLine> lines, std::size_t objects, bool lo
 std::vector<PoseLine> PosePlayer::take_due(double now_s)
 {
     const double round_s = lines_.back().time_s;
-    // Newest material and newest pose by object.
+    // Newest material, then newest pose, of each object; null if none is due.
     std::vector<const PoseLine*> newest(2 * objects_, nullptr);
     if (loops_ && now_s - round_start_s_ > 2.0 * round_s)
     {
-        // Whole rounds missed in a stall are skipped.
+        // Skips whole rounds that were missed in a stall.
         round_start_s_ += (std::floor((now_s - round_start_s_) / round_s) - 1.0) * round_s;
     }
     for (auto due_s = next_s(); due_s && *due_s <= now_s; due_s = next_s())

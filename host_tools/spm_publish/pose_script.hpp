@@ -18,42 +18,43 @@
 namespace tactus
 {
 
-/// Form of a line of a pose file; for messages.
+/// Form of a line with a pose, for messages.
 inline constexpr std::string_view kPoseLineForm = "TIME_S NAME X Y Z QX QY QZ QW [SCALE]";
-/// Word in place of the pose that removes the object.
+/// Word in place of the pose in a line that removes the object.
 inline constexpr std::string_view kGoneWord = "gone";
-/// Word in place of the pose that changes the material, and the form of that line.
+/// Word in place of the pose in a line that changes the material, and the form of such a line.
 inline constexpr std::string_view kMaterialWord = "material";
 inline constexpr std::string_view kMaterialLineForm = "TIME_S NAME material KEY=VALUE[,...]";
 
-/// Maximum bytes of a pose file, and maximum time in one.
+/// Maximum size of a pose file, and maximum time in it.
 inline constexpr std::size_t kPoseFileBytesMax = 64U << 20U;
 inline constexpr double kPoseTimeMax_s = 1e6;
 
-/// One line of a pose file, checked.
+/// One valid line of a pose file.
 struct PoseLine
 {
-    double time_s{0.0};    ///< Time from the start of play.
-    std::size_t object{0}; ///< Index into the objects of the script.
-    /// New pose, if any. Without pose and material the object is removed.
+    double time_s{0.0};    ///< Time since the start of play.
+    std::size_t object{0}; ///< Index into the objects given to the parser.
+    /// New pose, if any. A line without pose and material removes the object.
     std::optional<Pose> pose;
-    std::optional<Material> material; ///< New material, if any; the pose then stays.
+    /// New material, if any; then there is no pose, and the pose stays.
+    std::optional<Material> material;
 };
 
-/// An object that lines may name.
+/// An object that the lines of a pose file may name.
 struct ScriptedObject
 {
     std::string name;
-    double scale{1.0}; ///< Scale until a line sets another.
+    double scale{1.0}; ///< Scale until the first line with a SCALE.
 };
 
-/// Reads a pose file's text: lines of these forms in the order of their times; empty lines and
-/// those that begin with # are ignored. A pose without SCALE keeps the object's previous scale. A
-/// refusal begins with the line's number.
+/// Parses the text of a pose file. Lines have the forms above, ascending by time; empty lines and
+/// lines that begin with # are ignored. A pose without SCALE keeps the object's scale. A refusal
+/// begins with the number of the line.
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
 parse_pose_lines(std::string_view text, std::span<const ScriptedObject> objects);
 
-/// Reads a pose file; a refusal begins with its name.
+/// Reads and parses a pose file; a refusal begins with the path.
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
 read_pose_file(const std::filesystem::path& path, std::span<const ScriptedObject> objects);
 
@@ -63,26 +64,26 @@ inline constexpr std::size_t kInterpolatedLinesMax = 2'000'000;
 inline constexpr double kPosesRateMin_hz = 1.0;
 inline constexpr double kPosesRateMax_hz = 1'000.0;
 
-/// Adds lines between successive lines of each object, `rate_hz` a second: translations and scales
-/// linearly, rotations by the shortest way at constant speed. Nothing is added while the object is
-/// removed. Refused above kInterpolatedLinesMax lines.
+/// Adds poses between successive poses of each object, `rate_hz` a second: translation and scale
+/// linear, rotation the shortest way at constant speed. None are added while an object is removed.
+/// Refused above kInterpolatedLinesMax lines.
 [[nodiscard]] Result<std::vector<PoseLine>, Refusal>
 interpolated(std::span<const PoseLine> lines, std::size_t objects, double rate_hz);
 
-/// Plays lines in real time. If several lines of one object are due, only its newest pose and its
-/// newest material are sent.
+/// Plays the lines of a pose file in real time. If several lines of an object are due, only its
+/// newest pose and newest material are returned.
 class PosePlayer
 {
 public:
-    /// `lines` must not be empty; with `loops`, the last one's time, at which play restarts, must
-    /// be above 0.
+    /// `lines` must not be empty. If `loops`, play restarts at the time of the last line, which
+    /// must be above 0.
     PosePlayer(std::vector<PoseLine> lines, std::size_t objects, bool loops);
 
-    /// The newest lines that are due and were not returned yet: for each object its material, then
-    /// its pose. `now_s` never decreases.
+    /// Takes the lines that are due at `now_s`, for each object at most a material and then a pose.
+    /// `now_s` must not decrease.
     [[nodiscard]] std::vector<PoseLine> take_due(double now_s);
 
-    /// Time of the next line; none if all have been played.
+    /// Time of the next line; none after the last one.
     [[nodiscard]] std::optional<double> next_s() const;
 
 private:

@@ -38,13 +38,14 @@ void ServingReport::print_line(const std::string& line, LogLevel level)
         return;
     }
     clear_line();
-    // A fault in serving is no failure of the program, so the text has no program name before it.
+    // Without the program's name, which begins lines of level error: a fault of one controller is
+    // no failure of the program.
     const LogLevel shown = log_style().is_json ? level : LogLevel::info;
     print_out(log_text(log_style(), shown, "spm_publish", line, std::chrono::system_clock::now()) +
               '\n');
 }
 
-void ServingReport::update(const dds::DdsHost& host)
+void ServingReport::update(const dds::DdsServer& server)
 {
     const auto now = Clock::now();
     const std::chrono::duration<double> passed = now - last_;
@@ -52,9 +53,9 @@ void ServingReport::update(const dds::DdsHost& host)
     {
         return;
     }
-    const auto counters = host.counters();
+    const auto counters = server.counters();
     const bool has_sent = counters.pieces_sent != shown_.pieces_sent;
-    const std::string line = rates(host, passed.count());
+    const std::string line = rates(server, passed.count());
     last_ = now;
     shown_ = counters;
     if (is_terminal_)
@@ -69,13 +70,13 @@ void ServingReport::update(const dds::DdsHost& host)
     }
 }
 
-std::string ServingReport::rates(const dds::DdsHost& host, double seconds) const
+std::string ServingReport::rates(const dds::DdsServer& server, double seconds) const
 {
-    const auto counters = host.counters();
+    const auto counters = server.counters();
     const auto pieces = static_cast<double>(counters.pieces_sent - shown_.pieces_sent);
     const auto bytes = static_cast<double>(counters.bytes_sent - shown_.bytes_sent);
     return fmt::format("{}, {:.0f} chunks/s, {:.1f} KB/s, {} in all",
-                       counted(host.subscribers().size(), "controller"), pieces / seconds,
+                       counted(server.subscribers().size(), "controller"), pieces / seconds,
                        bytes / seconds / 1e3, counted(counters.pieces_sent, "chunk"));
 }
 

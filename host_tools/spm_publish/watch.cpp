@@ -50,11 +50,11 @@ std::string model_text(const ModelIdentity& identity, const ModelTelemetry& mode
     if (model.stage != ModelStage::resident)
     {
         return text + kModelStageNames[static_cast<std::size_t>(model.stage)] +
-               (model.host_gone ? " host gone" : "");
+               (model.server_gone ? " server gone" : "");
     }
     text += model.pages.capacity > 0
                 ? fmt::format("{}/{} pages", model.pages.used, model.pages.capacity)
-                : fmt::format("{} pages", model.pages.used);
+                : counted(model.pages.used, "page");
     if (model.piece_wait_ns > 0)
     {
         text += fmt::format(" {:.1f} ms", static_cast<double>(model.piece_wait_ns) * 1e-6);
@@ -63,10 +63,10 @@ std::string model_text(const ModelIdentity& identity, const ModelTelemetry& mode
     {
         text += fmt::format(" pose {:.1f} ms old", static_cast<double>(model.pose_age_ns) * 1e-6);
     }
-    return text + (model.host_gone ? " host gone" : "");
+    return text + (model.server_gone ? " server gone" : "");
 }
 
-/// Stages of the models in telemetry; empty if all are resident.
+/// Number of models in each stage, as text; empty if all are resident.
 std::string stages_text(const Telemetry& telemetry)
 {
     std::array<std::uint32_t, kModelStages> counts{};
@@ -110,7 +110,7 @@ std::string watch_line(const dds::WatchedController& controller)
     return text;
 }
 
-void Watch::update(const dds::TelemetryReader& controllers, const dds::DdsHost& host,
+void Watch::update(const dds::TelemetryReader& controllers, const dds::DdsServer& server,
                    ServingReport& report)
 {
     const auto now = Clock::now();
@@ -124,39 +124,39 @@ void Watch::update(const dds::TelemetryReader& controllers, const dds::DdsHost& 
     {
         report.print_line(watch_line(controller));
     }
-    print_served(host, passed.count(), report);
-    print_refused(host, report);
+    print_served(server, passed.count(), report);
+    print_refused(server, report);
 }
 
-/// Prints controllers, those of one name together.
-void Watch::print_served(const dds::DdsHost& host, double seconds, ServingReport& report)
+/// Prints a line for each name of a controller, with the sums over all controllers of that name.
+void Watch::print_served(const dds::DdsServer& server, double seconds, ServingReport& report)
 {
-    std::map<std::string, dds::DdsHost::Subscriber> all;
-    for (const dds::DdsHost::Subscriber& one : host.subscribers())
+    std::map<std::string, dds::DdsServer::Subscriber> all;
+    for (const dds::DdsServer::Subscriber& one : server.subscribers())
     {
-        dds::DdsHost::Subscriber& named = all[one.controller];
+        dds::DdsServer::Subscriber& named = all[one.controller];
         named.pieces_sent += one.pieces_sent;
         named.bytes_sent += one.bytes_sent;
     }
     for (const auto& [name, now] : all)
     {
-        const dds::DdsHost::Subscriber& before = served_[name];
+        const dds::DdsServer::Subscriber& before = served_[name];
         const auto since = [&](std::uint64_t total, std::uint64_t then)
         { return static_cast<double>(total - std::min(then, total)) / seconds; };
-        report.print_line(fmt::format("served {}: {:.0f} pieces/s, {:.1f} KB/s, {} pieces in all",
-                                      name, since(now.pieces_sent, before.pieces_sent),
+        report.print_line(fmt::format("served {}: {:.0f} pieces/s, {:.1f} KB/s, {} in all", name,
+                                      since(now.pieces_sent, before.pieces_sent),
                                       since(now.bytes_sent, before.bytes_sent) * 1e-3,
-                                      now.pieces_sent));
+                                      counted(now.pieces_sent, "piece")));
     }
     served_ = std::move(all);
 }
 
-/// Prints refusals of the first few participants and counts the others.
-void Watch::print_refused(const dds::DdsHost& host, ServingReport& report)
+/// Prints lines for the first 8 participants with new refusals and the number of further ones.
+void Watch::print_refused(const dds::DdsServer& server, ServingReport& report)
 {
     constexpr std::size_t kMostLines = 8;
     std::size_t lines = 0;
-    for (const dds::PeerRefusals& peer : host.domain().participants().refusals().list())
+    for (const dds::PeerRefusals& peer : server.domain().participants().refusals().list())
     {
         std::uint64_t total = 0;
         std::string reasons;
@@ -170,15 +170,15 @@ void Watch::print_refused(const dds::DdsHost& host, ServingReport& report)
         std::uint64_t& before = refused_[peer.id];
         if (total > before && ++lines <= kMostLines)
         {
-            report.print_line(fmt::format("refusals of {}: {} more{}",
-                                          peer.name.empty() ? "somebody" : peer.name,
+            report.print_line(fmt::format("refusals from {}: {} more{}",
+                                          peer.name.empty() ? "an unknown participant" : peer.name,
                                           total - before, reasons));
         }
         before = total;
     }
     if (lines > kMostLines)
     {
-        report.print_line(fmt::format("refusals of {} more participants", lines - kMostLines));
+        report.print_line("refusals from " + counted(lines - kMostLines, "more participant"));
     }
 }
 

@@ -13,28 +13,28 @@
 namespace tactus
 {
 
-/// One line about a controller's present state; names in it are valid ones.
+/// Line about a controller's present state. Names in it are valid (is_valid_name()).
 [[nodiscard]] std::string watch_line(const dds::WatchedController& controller);
 
-/// Prints once a second: a line for each controller on the domain, one for each that this server
-/// sends to, and one for each participant with refusals in that second.
+/// Prints lines once a second: for each controller on the domain, for each controller that this
+/// server sends to, and for each participant with refusals in that second.
 class Watch
 {
 public:
-    /// Prints if due. Call it often, after the reader's poll().
-    void update(const dds::TelemetryReader& controllers, const dds::DdsHost& host,
+    /// Prints if a second has passed. Call it often, after controllers.poll().
+    void update(const dds::TelemetryReader& controllers, const dds::DdsServer& server,
                 ServingReport& report);
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    void print_served(const dds::DdsHost& host, double seconds, ServingReport& report);
-    void print_refused(const dds::DdsHost& host, ServingReport& report);
+    void print_served(const dds::DdsServer& server, double seconds, ServingReport& report);
+    void print_refused(const dds::DdsServer& server, ServingReport& report);
 
     Clock::time_point last_{Clock::now()};
-    /// Subscribers as last printed, by name.
-    std::map<std::string, dds::DdsHost::Subscriber> served_;
-    /// Total refusals as last printed, by participant.
+    /// Subscribers as printed last, by name of the controller.
+    std::map<std::string, dds::DdsServer::Subscriber> served_;
+    /// Total number of refusals as printed last, by participant.
     std::map<dds::ParticipantId, std::uint64_t> refused_;
 };
 

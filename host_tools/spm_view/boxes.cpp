@@ -43,7 +43,7 @@ std::string bytes_of(const std::vector<Aabb>& boxes)
     return bytes;
 }
 
-/// The face as the controller's forest passes it to its tree.
+/// Face in the form in which the controller's forest passes it to the tree.
 ChangedFace face_of(const DecodedModel& model, const Replay& replay, FaceId id, PrimId prim)
 {
     const ModelCounts counts = model.header().counts();
@@ -88,7 +88,7 @@ Result<std::string, Refusal> tree_box_bytes(const DecodedModel& model,
     {
         return *refusal;
     }
-    // A block may have a single face, and a node at least two children.
+    // Capacity for the worst case: one face in each block, two children in each node.
     const std::uint32_t faces = replay.face_count();
     const TreeCapacities capacities{faces, faces + AbTree::kReserve, faces + AbTree::kReserve};
     Arena measure = Arena::measuring();
@@ -122,7 +122,7 @@ Result<std::string, Refusal> chunk_box_bytes(KnownModel& model, std::span<const 
     {
         if (chunk.value >= counts.chunks())
         {
-            return Refusal{"the refinement state has a chunk that the model has not"};
+            return Refusal{"the refinement state has a chunk that the model does not have"};
         }
         const ContentKey key{ContentKind::index_page, chunk.value >> kChunksPerIndexPageLog2};
         if (keys.empty() || keys.back() != key) // Keys ascend.

@@ -11,28 +11,28 @@
 #include <string>
 #include <vector>
 
-// Any thread, except the haptic one: calls allocate, and work on their arguments alone.
+// Any thread except the haptic one: calls allocate. Results depend on the arguments alone.
 //
-// Bytes, little-endian: u32 boxes n, f32 low and high[6 n], of the model's frame, in metres.
+// Form of the results, little-endian: u32 number of boxes n, then n times f32 low[3], high[3], in
+// metres in the model's frame.
 namespace tactus::view
 {
 
-/// Deepest tree level in an answer: beyond it there are only blocks.
+/// Maximum level of tree_box_bytes(): the nodes of deeper levels are all blocks.
 inline constexpr std::uint32_t kTreeLevelsMax = 24;
 
-/// Boxes of the controller's AB-Tree, `level` levels of nodes below its root, and the blocks above.
-/// The tree depends only on the faces, so it is built here from the same pages. Refused like
+/// Boxes of the controller's AB-Tree: nodes at depth `level` (0: root), and blocks at smaller
+/// depths. The tree depends on the faces only, so it is rebuilt from the same pages. Refused like
 /// cut_bytes().
 [[nodiscard]] Result<std::string, Refusal>
 tree_box_bytes(const DecodedModel& model, std::span<const RefinementStatePage> pages,
                std::uint32_t level);
 
-/// Influence boxes of chunks, which must ascend: the regions in which a controller's resident or
-/// requested chunks are of use. Waits for index pages (KnownModel::bring). Refused if the chunks
-/// are not the model's.
+/// Influence boxes of chunks, which must ascend: a sphere outside of a box needs nothing of its
+/// chunk. Waits for missing index pages (KnownModel::bring). Refused if the model lacks a chunk.
 [[nodiscard]] Result<std::string, Refusal> chunk_box_bytes(KnownModel& model,
                                                            std::span<const ChunkId> chunks);
-/// Chunks of the pages.
+/// Chunk numbers of the pages.
 [[nodiscard]] std::vector<ChunkId> chunks_of(std::span<const RefinementStatePage> pages);
 
 } // namespace tactus::view

@@ -26,7 +26,7 @@ void append(std::string& bytes, const T& value)
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// Refuses pages with records that the model lacks.
+/// Refusal of pages with split records that the model lacks.
 std::optional<Refusal> look_at(const ModelCounts& counts,
                                std::span<const RefinementStatePage> pages)
 {
@@ -40,15 +40,15 @@ std::optional<Refusal> look_at(const ModelCounts& counts,
         if (page.chunk.value >= counts.chunks() ||
             page.chunk.value * kRecordsPerChunk + last >= counts.records)
         {
-            return Refusal{
-                fmt::format("the refinement state has record {} of chunk {}, the model has not",
-                            last, page.chunk.value)};
+            return Refusal{fmt::format(
+                "the refinement state has record {} of chunk {}, which the model does not have",
+                last, page.chunk.value)};
         }
     }
     return std::nullopt;
 }
 
-/// Split records in an order in which they can be split: by depth, then by number.
+/// Split records of the pages by depth, then number; each follows the records it depends on.
 std::vector<RecordId> split_records(const DecodedModel& model,
                                     std::span<const RefinementStatePage> pages)
 {
@@ -66,7 +66,8 @@ std::vector<RecordId> split_records(const DecodedModel& model,
     return records;
 }
 
-/// Appends the vertices that faces use; returns the place of each id among them.
+/// Appends the numbers of vertices and faces, and the vertices that faces use. Returns the place of
+/// each vertex id among these; kNoneValue for unused ones.
 std::vector<std::uint32_t> append_vertices(const DecodedModel& model, const Replay& replay,
                                            std::string& bytes)
 {

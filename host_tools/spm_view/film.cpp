@@ -25,11 +25,11 @@ namespace tactus::view
 namespace
 {
 
-/// Data of a model in recordings: its base mesh and the pieces received.
+/// A model whose base mesh and received pieces are in recordings.
 class RecordedPieces final : public KnownModel
 {
 public:
-    /// Recording, and number of the model in it.
+    /// A recording, and the number of the model in it.
     using Source = std::pair<std::shared_ptr<const Recording>, std::uint32_t>;
 
     RecordedPieces(Source source, std::string name)
@@ -39,7 +39,7 @@ public:
         , hash_(model_hash(model_of(sources_[0]).header))
     {
     }
-    /// Adds the same model in another recording; call it before any read.
+    /// Adds another recording of the same model. Call it before any read().
     void add(Source source) { sources_.push_back(std::move(source)); }
 
     [[nodiscard]] const std::string& name() const noexcept override { return name_; }
@@ -63,9 +63,9 @@ public:
                 return Done{};
             }
         }
-        return Refusal{fmt::format("{} has not come whole in the recording: piece {} of kind {} "
-                                   "is missing",
-                                   name_, key.number, static_cast<int>(key.kind))};
+        return Refusal{
+            fmt::format("the recording has only a part of model {}: piece {} of kind {} is missing",
+                        name_, key.number, static_cast<int>(key.kind))};
     }
 
 private:
@@ -80,7 +80,7 @@ private:
     ContentHash hash_;
 };
 
-/// Puts a model on the shelf; several recordings may have pieces of it.
+/// Adds a model to the shelf, or its source to the model that is there.
 void put_on(ModelShelf& shelf, const std::shared_ptr<RecordedPieces>& model,
             RecordedPieces::Source source)
 {
@@ -92,7 +92,7 @@ void put_on(ModelShelf& shelf, const std::shared_ptr<RecordedPieces>& model,
     shelf.add(model);
 }
 
-/// Shape in the form of hrtc's --tool, as far as a view can draw it.
+/// Shape in the form of hrtc's --tool option, for shapes that the page can draw.
 std::string shape_of(const ToolSpec& tool)
 {
     if (const auto* segment = std::get_if<Segment>(&tool.core))
@@ -110,7 +110,7 @@ std::string shape_of(const ToolSpec& tool)
                                                         : "mesh";
 }
 
-/// Name without characters that a text format must escape, as for controllers.
+/// Name of a file, with only characters that no text format must escape.
 std::string name_of(const std::string& path)
 {
     std::string name = std::filesystem::path(path).filename().string();
@@ -122,7 +122,7 @@ std::string name_of(const std::string& path)
     return name;
 }
 
-/// FNV-1a over the bits of values.
+/// FNV-1a hash of the bits of the added values.
 class Fold
 {
 public:
@@ -179,13 +179,13 @@ std::uint64_t hash_of(const std::vector<QueueEvent>& events)
 
 } // namespace
 
-/// Collects the data of each frame while the recording is replayed.
+/// Adds the data of each frame to a film while the recording is replayed.
 struct Film::Maker
 {
     Film& film;
     const RecordedSetup& setup;
-    Frame* frame{nullptr};         ///< Set from the replay's start on.
-    std::vector<PageMeta> slots{}; ///< Slots in the previous frame.
+    Frame* frame{nullptr};         ///< Frame of the replay; null before its start.
+    std::vector<PageMeta> slots{}; ///< Page slots as of the previous frame.
 
     void take(std::uint64_t number, const RecordedFrame& given, const FrameOutput& returned)
     {
@@ -228,8 +228,8 @@ struct Film::Maker
     }
 
 private:
-    /// Worst kind in the order of hrtc's counts: separated, exact, within tolerance, bounded,
-    /// stale.
+    /// Worst kind of answer of a frame. From best to worst: separated, exact, within tolerance,
+    /// bounded, stale.
     static AnswerKind worst_of(std::span<const PairOutput> pairs)
     {
         constexpr std::array order{AnswerKind::stale, AnswerKind::bounded,
@@ -244,7 +244,8 @@ private:
         return AnswerKind::separated;
     }
 
-    /// Records pages that are removed first, since another slot may have the same chunk now.
+    /// Records changed pages, removals first: the chunk of a removed page may now be in another
+    /// slot.
     void take_pages(std::uint64_t number)
     {
         const std::span<const PageMeta> metas = frame->pools().cache.pages.metas;
@@ -343,7 +344,7 @@ Result<std::unique_ptr<Film>, Refusal> Film::develop(const std::string& path, st
     const auto report = replay(*recording, nullptr, watch);
     if (!report || film->moments_.empty())
     {
-        return Refusal{path + ": " + (report ? "it has no frame" : report.error().text)};
+        return Refusal{path + ": " + (report ? "the recording has no frame" : report.error().text)};
     }
     film->note_ =
         report.value().difference || recording->has_failed() || !recording->missing().empty()
@@ -449,7 +450,7 @@ FrontPointer Film::front(std::uint64_t frame) const
 namespace
 {
 
-/// The largest distance between the positions, or 0.
+/// Distance of two positions.
 double apart(const std::array<double, 3>& a, const std::array<double, 3>& b)
 {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -524,9 +525,9 @@ struct Kind
     double per_unit;
 };
 
-constexpr std::array<Kind, Film::kWhats> kKinds{{{"the hands", "mm", 1e3},
+constexpr std::array<Kind, Film::kWhats> kKinds{{{"the device poses", "mm", 1e3},
                                                  {"the scene", nullptr, 0.0},
-                                                 {"what came from hosts", nullptr, 0.0},
+                                                 {"the data from servers", nullptr, 0.0},
                                                  {"the faces", nullptr, 0.0},
                                                  {"the distances", "mm", 1e3},
                                                  {"the forces", "N", 1.0}}};

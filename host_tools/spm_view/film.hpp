@@ -23,21 +23,21 @@
 namespace tactus::view
 {
 
-/// A recording prepared for a viewer: the data that a viewer would have received in each frame, so
-/// that any frame can be shown at once. Some 400 bytes a frame with one tool, and the changes. One
-/// thread creates it, any thread reads it.
+/// A recording prepared for display: for each frame the data that a viewer would have received, for
+/// access in any order. Takes about 400 bytes a frame with one tool, plus the changes. One thread
+/// creates a film, any thread may read it.
 class Film
 {
 public:
-    /// Replays the recording, which takes the time of its frames, and puts its models on the shelf.
-    /// Ends early, with the frames so far, if `goes_on` returns false. `number` distinguishes
-    /// films. Refused if the file is, if no frame can be created from it or it has none.
+    /// Replays the recording at `path` and adds its models to the shelf. If `goes_on` returns
+    /// false, the film ends with the frames so far. `number`, unlike for each film, becomes part of
+    /// its id(). Refused if the file is unreadable, cannot be replayed or has no frame.
     [[nodiscard]] static Result<std::unique_ptr<Film>, Refusal>
     develop(const std::string& path, std::uint8_t number, ModelShelf& shelf,
             const std::function<bool()>& goes_on);
 
-    /// State of the controller in one frame, the last one for numbers beyond: its telemetry, its
-    /// refinement state with the frame's number as serial, and its objects.
+    /// State of the controller in a frame; for numbers beyond the end, in the last frame. The
+    /// serial of its refinement state is the number of the frame.
     [[nodiscard]] LiveController at(std::uint64_t frame) const;
     [[nodiscard]] FrontPointer front(std::uint64_t frame) const;
 
@@ -45,38 +45,38 @@ public:
     [[nodiscard]] const std::string& name() const noexcept { return name_; }
     [[nodiscard]] std::int64_t period_ns() const noexcept { return period_ns_; }
     [[nodiscard]] std::uint64_t frames() const noexcept { return moments_.size(); }
-    /// Reason why the film ends before the recording does; otherwise empty.
+    /// Reason why the film ends before the recording; empty if it does not.
     [[nodiscard]] const std::string& note() const noexcept { return note_; }
 
     /// Difference of two films in a frame.
     struct Gap
     {
         bool differs{false};
-        double amount{0.0}; ///< Amount, in metres, newtons or a count.
+        double amount{0.0}; ///< Size of the difference, in metres, in newtons or as a count.
     };
-    /// Kinds of difference, in the order of cause and effect.
+    /// Kinds of difference. Each is a possible cause of those after it.
     enum class What : std::uint8_t
     {
         hand,    ///< Poses of devices.
         scene,   ///< Objects added, moved or removed.
         pieces,  ///< Pieces received from servers.
         faces,   ///< Active faces.
-        answers, ///< Distances: their bounds and kinds.
+        answers, ///< Bounds and kinds of the distances.
         forces,  ///< Forces sent.
     };
     static constexpr std::size_t kWhats = 6;
-    /// Compares a frame, which both films must have.
+    /// Difference of kind `what` between two films in a frame that both must have.
     [[nodiscard]] static Gap compare(const Film& a, const Film& b, std::uint64_t frame, What what);
 
 private:
-    /// Data of one frame; tools and pairs are in separate vectors.
+    /// Data of one frame; `tools_`, `pairs_` and `regions_` have the rest.
     struct Moment
     {
         std::int64_t time_ns{0};
         std::uint64_t scene{0};  ///< Hash of the frame's changes of the scene.
-        std::uint64_t pieces{0}; ///< Hash of the frame's arrivals.
+        std::uint64_t pieces{0}; ///< Hash of the pieces that arrived in the frame.
         std::uint64_t faces{0};  ///< Hash of the models' state hashes.
-        /// Number of frames so far by the worst answer's kind.
+        /// Number of frames so far with each worst answer, by AnswerKind.
         std::array<std::uint32_t, 5> answers{};
         std::uint32_t faults{0};
         std::uint32_t faults_seen{0};
@@ -84,9 +84,9 @@ private:
         std::uint32_t regions_end{0};
         AnswerKind kind{AnswerKind::separated};
     };
-    /// Split records of a page; none while it is not resident.
+    /// Bits of a page's split records; none while the page is not resident.
     using Page = std::optional<std::uint64_t>;
-    using PageName = std::pair<std::uint32_t, std::uint32_t>; ///< Model and chunk.
+    using PageName = std::pair<std::uint32_t, std::uint32_t>; ///< Numbers of model and chunk.
     struct Maker;
     struct SameBudgets
     {
@@ -111,9 +111,9 @@ private:
     std::size_t tool_count_{0};
     std::vector<RefinementStateTool> shapes_; ///< Shapes by tool.
     std::vector<ModelIdentity> models_;       ///< Identities by model.
-    std::vector<Moment> moments_;             ///< Moments by frame.
-    std::vector<ToolTelemetry> tools_;        ///< Tools by frame, tool_count_ each.
-    std::vector<PairTelemetry> pairs_;        ///< Pairs; those of a moment end at its pairs_end.
+    std::vector<Moment> moments_;             ///< Moments, one for each frame.
+    std::vector<ToolTelemetry> tools_;        ///< Tools, tool_count_ for each frame.
+    std::vector<PairTelemetry> pairs_; ///< Pairs of all frames; those of a frame end at pairs_end.
     std::vector<RefinementStateRegion>
         regions_; ///< Regions; those of a moment end at its regions_end.
     Timeline<Budgets, SameBudgets> budgets_;
@@ -122,12 +122,12 @@ private:
     std::map<std::uint32_t, Timeline<std::optional<SeenObject>>> objects_; ///< Objects by number.
 };
 
-/// Difference of two films in one kind.
+/// First and largest difference of two films in one kind.
 struct FilmDifference
 {
-    std::string what;       ///< Kind of the difference, as text.
-    std::string how;        ///< First amount and maximum, as text.
-    std::uint64_t frame{0}; ///< First frame.
+    std::string what;       ///< Name of the kind.
+    std::string how;        ///< First and largest amount, as text.
+    std::uint64_t frame{0}; ///< First frame with a difference.
 };
 
 /// One recording, or two for comparison.
@@ -142,14 +142,15 @@ public:
     }
     /// Number of frames of the longest film.
     [[nodiscard]] std::uint64_t frames() const noexcept;
-    /// First differences, in the order of Film::What, and that of the length; none for one film.
+    /// Differences in the order of Film::What, then that of the lengths; empty for one film.
     [[nodiscard]] const std::vector<FilmDifference>& differences() const noexcept
     {
         return differences_;
     }
-    /// All films in one frame; serial and refinement states as in Film::at().
+    /// State of all films in one frame, as Film::at().
     [[nodiscard]] Snapshot at(std::uint64_t frame) const;
-    /// Null if there is no such film or frame.
+    /// Refinement state of a film, by its id_text(), in a frame; null if there is no such film or
+    /// frame.
     [[nodiscard]] FrontPointer front(const std::string& controller, std::uint64_t frame) const;
 
 private:

@@ -11,8 +11,8 @@
 namespace tactus::view
 {
 
-/// Text about a tool's force: "on", or "off: " with each cause and the condition for its return.
-/// `models` are those of the controller. Any thread.
+/// Text about the force of a tool: "on", or "off: " and for each cause the condition under which
+/// the force returns. `models` are those of the tool's controller. Any thread.
 [[nodiscard]] std::string force_words(const RefinementStateTool& tool,
                                       const ToolTelemetry& telemetry,
                                       std::span<const ModelTelemetry> models);

@@ -16,7 +16,7 @@
 namespace tactus::view
 {
 
-/// A model whose faces the viewer can rebuild, from a file, a server or a recording. Any thread.
+/// A model, from a file, a server or a recording, with which the viewer rebuilds faces. Any thread.
 class KnownModel
 {
 public:
@@ -27,16 +27,15 @@ public:
     KnownModel(KnownModel&&) = delete;
     KnownModel& operator=(KnownModel&&) = delete;
 
-    /// Name from its file or from its server.
+    /// Name of its file, or name given by its server.
     [[nodiscard]] virtual const std::string& name() const noexcept = 0;
     [[nodiscard]] virtual const ContentHash& hash() const noexcept = 0;
     [[nodiscard]] virtual const ModelHeader& header() const noexcept = 0;
 
-    /// Waits until these pieces can be read, a second or two at most; then refused with the missing
-    /// ones. The keys must be the model's.
+    /// Waits, at most two seconds, until these pieces can be read. Refused if some are then
+    /// missing; the refusal counts them. The model must have the keys.
     [[nodiscard]] virtual std::optional<Refusal> bring(std::span<const ContentKey> keys) = 0;
-    /// Reads a piece in its coded form, verified against its hash; refused if it is missing. May
-    /// wait for a disk.
+    /// Reads a verified piece in coded form. Refused if it is missing. May wait for a disk.
     [[nodiscard]] virtual Result<Done, Refusal> read(ContentKey key,
                                                      std::vector<std::byte>& coded) = 0;
 };

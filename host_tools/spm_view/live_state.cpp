@@ -107,8 +107,8 @@ void LiveState::keep(const dds::SeenFront& front)
     add_objects(kept, front.front);
 }
 
-/// Updates the objects. An object in the listed range of numbers that the refinement state lacks
-/// was removed.
+/// Updates the stored objects. Objects with numbers in the range that `front` lists in full, but
+/// which it lacks, were removed.
 void LiveState::add_objects(Kept& kept, const RefinementState& front)
 {
     kept.objects.erase(kept.objects.lower_bound(front.sweep_begin),

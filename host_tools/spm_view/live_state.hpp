@@ -22,12 +22,12 @@ namespace tactus::view
 
 using FrontPointer = std::shared_ptr<const dds::SeenFront>;
 
-/// An object and its last known pose.
+/// Newest known state of one object.
 struct SeenObject
 {
     RefinementStateObject object;
     ContentHash model{};
-    std::string name{}; ///< Name in a recording; may be empty.
+    std::string name{}; ///< Name in a recording; empty for live data.
 
     bool operator==(const SeenObject&) const = default;
 };
@@ -36,44 +36,44 @@ struct SeenObject
 struct LiveController
 {
     dds::WatchedController told;
-    FrontPointer front;              ///< Refinement state; null: not published.
-    std::vector<SeenObject> objects; ///< Objects by their numbers on the controller.
-    /// True for a recording, which has no times, no deadlines and no reasons for withheld forces.
+    FrontPointer front;              ///< Refinement state; null if none was received.
+    std::vector<SeenObject> objects; ///< Objects, ascending by their number on the controller.
+    /// True for a recording, which lacks times, deadlines and the causes of fades.
     bool is_recorded{false};
 };
 
 /// State of all controllers at one moment.
 struct Snapshot
 {
-    std::uint64_t serial{1}; ///< Serial number; increases by one with each change.
+    std::uint64_t serial{1}; ///< Number of the snapshot; increases by one with each change.
     std::vector<LiveController> controllers;
 
-    /// Controller with this id in hexadecimal digits, or the first one if `id` is empty; null if it
-    /// is missing.
+    /// Controller with this id_text(); the first one if `id` is empty; null if there is none.
     [[nodiscard]] const LiveController* find(const std::string& id) const;
 };
 
-/// State shared by the thread that receives DDS data and those that answer the browser: the newest
-/// snapshot, and the refinement states of the last minute. Any thread.
+/// State shared by the thread that receives DDS data and the threads that answer browsers: the
+/// newest snapshot, and the refinement states of the last minute. Any thread.
 class LiveState
 {
 public:
-    /// Maximum number of stored refinement states of one controller: a minute's.
+    /// Maximum number of stored refinement states of one controller: 10 a second for a minute.
     static constexpr std::size_t kFronts = 600;
-    /// Maximum bytes of all stored refinement states; a few more while they are read.
+    /// Maximum bytes of all stored refinement states. Those being read take memory in addition.
     static constexpr std::size_t kFrontBytes = std::size_t{64} << 20U;
 
-    /// Publishes a snapshot. Only for the thread that receives DDS data.
+    /// Publishes a snapshot if the data changed. Only the thread that receives DDS data may call
+    /// it.
     void publish(const std::vector<dds::WatchedController>& told,
                  const std::vector<dds::SeenFront>& fronts);
 
     /// The newest snapshot; never null.
     [[nodiscard]] std::shared_ptr<const Snapshot> newest() const;
-    /// The newest snapshot as soon as it is newer than `seen`; after `patience` in any case.
+    /// Waits at most `patience` for a snapshot with a serial above `seen`; returns the newest one.
     [[nodiscard]] std::shared_ptr<const Snapshot>
     wait_newer(std::uint64_t seen, std::chrono::milliseconds patience) const;
 
-    /// A refinement state of the last minute; null if it is not stored.
+    /// Stored refinement state of a controller by its serial; null if it is not stored.
     [[nodiscard]] FrontPointer front(const std::string& controller, std::uint64_t serial) const;
 
 private:

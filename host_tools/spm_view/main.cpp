@@ -32,12 +32,12 @@ namespace tactus::view
 namespace
 {
 
-/// Interval of the checks for DDS data; the second one applies while pieces of models are in
+/// Interval of the polls for DDS data; the second value applies while data of models are in
 /// transit.
 constexpr std::chrono::milliseconds kLook{25};
 constexpr std::chrono::milliseconds kBusyLook{1};
 
-/// Time since the program began to serve.
+/// End of serving: at a stop request, or after --seconds since the start.
 class Stay
 {
 public:
@@ -60,7 +60,7 @@ struct Ears
 {
     std::unique_ptr<dds::TelemetryReader> telemetry;
     std::unique_ptr<dds::RefinementStateReader> fronts;
-    std::unique_ptr<ModelFetcher> models; ///< Null if requests to servers are not possible.
+    std::unique_ptr<ModelFetcher> models; ///< Null if this program may not request pieces.
 };
 
 void look(Ears& ears, LiveState& live)
@@ -117,15 +117,15 @@ Result<Ears, Refusal> listen(const dds::Domain& domain, ModelShelf& shelf)
     {
         ears.models = std::move(models).value();
     }
-    else // A participant may be allowed to watch but not to request pieces.
+    else // DDS Security may allow a participant to receive but not to request.
     {
         log_message(LogLevel::warning, "spm_view",
-                    fmt::format("no models but those of files: {}", models.error().text));
+                    fmt::format("only models from files can be shown: {}", models.error().text));
     }
     return ears;
 }
 
-/// Serves the page until the program ends; `what` describes its content.
+/// Starts the web server and prints its address; `what` describes the content of the page.
 Result<std::unique_ptr<WebServer>, Refusal> serve(const WebServer::Parts& parts,
                                                   const Options& options, const std::string& what)
 {
@@ -195,8 +195,8 @@ int show_recordings(const CommandLine& line, const Options& options, ModelShelf&
 
 int run(int argc, char** argv)
 {
-    CommandLine line("spm_view", "Shows in a browser of this machine what controllers touch, and "
-                                 "why a force is withheld.");
+    CommandLine line("spm_view", "Shows the contacts of controllers in a browser on this machine, "
+                                 "with the reasons for withheld forces.");
     const auto parsed = parse_options(line, argc, argv);
     if (const int* code = std::get_if<int>(&parsed))
     {

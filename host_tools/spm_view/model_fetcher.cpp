@@ -29,13 +29,13 @@ namespace
 
 using Clock = std::chrono::steady_clock;
 
-/// Silence after which pieces are requested again.
+/// Time without a piece after which pieces are requested again.
 constexpr std::chrono::milliseconds kAgain{100};
-/// Maximum wait for requested pieces.
+/// Maximum wait of bring().
 constexpr std::chrono::milliseconds kPatience{1'500};
 /// Maximum number of pieces in one request.
 constexpr std::size_t kPiecesAtOnce = 256;
-/// Name by which servers know the viewer.
+/// Name under which servers show the viewer.
 constexpr const char* kName = "spm_view";
 
 struct KeyOrder
@@ -48,11 +48,11 @@ struct KeyOrder
 
 } // namespace
 
-/// A model from a server. Its pieces stay in memory, at most the size of the model's file.
+/// A model from a server. Received pieces are never removed, so memory grows to its file's size.
 class FetchedModel final : public KnownModel, private PieceSink
 {
 public:
-    /// `served` must have its base mesh.
+    /// `served.base` must be complete.
     explicit FetchedModel(ServedModel served)
         : served_(std::move(served)), header_(ModelHeader::parse(served_.header).value())
     {
@@ -76,9 +76,9 @@ public:
             return std::nullopt;
         }
         const auto here = std::ranges::count_if(keys, is_resident);
-        return Refusal{fmt::format("{} of {} pieces of the model {} have come from its host{}",
-                                   here, keys.size(), served_.name,
-                                   is_gone_ ? ", which is gone" : "; the others are on their way")};
+        return Refusal{fmt::format(
+            "{} of {} pieces of the model {} have arrived from its server{}", here, keys.size(),
+            served_.name, is_gone_ ? ", which disconnected" : "; the others are requested")};
     }
     [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& coded) override
     {
@@ -86,18 +86,19 @@ public:
         const auto found = pieces_.find(key);
         if (found == pieces_.end())
         {
-            return Refusal{fmt::format("the model {} has not come whole", served_.name)};
+            return Refusal{fmt::format("the model {} is incomplete", served_.name)};
         }
         coded = found->second;
         return Done{};
     }
 
-    /// Polls the link and requests pieces. Only for the fetcher's thread, like leave_host().
+    /// Polls the link and requests wanted pieces. Only the fetcher's thread calls it and
+    /// leave_server().
     void step()
     {
         served_.link->poll(*this);
         const std::lock_guard lock(mutex_);
-        is_gone_ = served_.link->state() == LinkState::host_gone;
+        is_gone_ = served_.link->state() == LinkState::server_gone;
         const auto now = Clock::now();
         const bool is_stuck =
             now - progress_ >= kAgain || served_.link->session() != session_ || asked_.empty();
@@ -116,8 +117,8 @@ public:
         const std::lock_guard lock(mutex_);
         return !wanted_.empty() && !is_gone_;
     }
-    /// Ends the requests; missing pieces stay missing.
-    void leave_host()
+    /// Deletes the link; pieces that are missing then stay missing.
+    void leave_server()
     {
         served_.link.reset();
         const std::lock_guard lock(mutex_);
@@ -127,7 +128,8 @@ public:
 private:
     using Entries = std::array<ChunkEntry, kChunksPerIndexPage>;
 
-    /// Requests a piece. The index page of a chunk is requested first: it has the chunk's hash.
+    /// Marks a piece as wanted; for a chunk without its index page, which has its hash, that page
+    /// first.
     void want(ContentKey key)
     {
         if (!pieces_.contains(key))
@@ -183,7 +185,7 @@ private:
         return bytes.size() == entry.coded_bytes && content_hash(bytes) == entry.hash;
     }
 
-    ServedModel served_; ///< Model; its link belongs to the fetcher's thread.
+    ServedModel served_; ///< Model; only the fetcher's thread uses its link.
     ModelHeader header_;
     std::uint64_t session_{0};
     std::uint32_t generation_{0};
@@ -193,13 +195,13 @@ private:
     std::condition_variable came_;
     bool is_gone_{false};
     std::map<ContentKey, std::vector<std::byte>, KeyOrder> pieces_;
-    std::map<std::uint32_t, Entries> entries_; ///< Entries by index page.
-    std::set<ContentKey, KeyOrder> wanted_;    ///< Pieces that can be requested.
-    std::set<ContentKey, KeyOrder> waiting_;   ///< Chunks whose index pages are missing.
+    std::map<std::uint32_t, Entries> entries_; ///< Sizes and hashes of chunks, by index page.
+    std::set<ContentKey, KeyOrder> wanted_;    ///< Missing pieces that may be requested.
+    std::set<ContentKey, KeyOrder> waiting_;   ///< Wanted chunks without their index page.
     std::vector<ContentKey> asked_; ///< Pieces of the last request that have not arrived.
 };
 
-/// Search for one model.
+/// State of the fetch of one model's header and base mesh.
 struct ModelFetcher::Search
 {
     Search(dds::PieceExchange& exchange, dds::Catalogue& catalogue, const ContentHash& hash)
@@ -208,11 +210,11 @@ struct ModelFetcher::Search
     }
 
     dds::HeaderSearch header; ///< Search for the header, until `served` is set.
-    bool is_announced{false}; ///< True once announced to the shelf.
-    std::string objection;    ///< Last logged objection.
-    ServedModel served;       ///< Model, from the header until its base mesh is complete.
+    bool is_announced{false}; ///< True once the shelf knows that the model is coming.
+    std::string objection;    ///< Objection of `header` that was logged last.
+    ServedModel served;       ///< Model with header, while its base mesh is fetched.
     std::unique_ptr<BaseFetch> base;
-    std::shared_ptr<FetchedModel> model; ///< Model, in the end.
+    std::shared_ptr<FetchedModel> model; ///< Model on the shelf; null before.
 };
 
 Result<std::unique_ptr<ModelFetcher>, Refusal> ModelFetcher::create(const dds::Domain& domain,
@@ -243,9 +245,9 @@ ModelFetcher::~ModelFetcher()
 {
     for (auto& [hash, search] : searches_)
     {
-        if (search->model != nullptr) // The shelf keeps it.
+        if (search->model != nullptr) // The shelf still uses the model.
         {
-            search->model->leave_host();
+            search->model->leave_server();
         }
     }
 }
@@ -295,8 +297,9 @@ void ModelFetcher::step(const ContentHash& hash, Search& search)
         }
         else if (state == BaseFetch::State::refused)
         {
-            log_(fmt::format("model '{}' has a base mesh of another hash than its header names",
-                             search.served.name));
+            log_(
+                fmt::format("model '{}' has a base mesh that does not match the hash in its header",
+                            search.served.name));
             search.base.reset();
             search.served = {};
             search.header.refuse(search.header.offer());

@@ -17,28 +17,26 @@ namespace tactus::view
 
 class FetchedModel;
 
-/// Fetches models from their servers to a shelf, by their hashes: header and base mesh when a model
-/// is requested, pieces on demand. All data are verified as in a controller. One thread, except for
-/// the models on the shelf.
+/// Fetches models by their hashes from servers to a shelf: header and base mesh at once, pieces on
+/// demand. All data are verified. One thread; the models on the shelf may be used by any thread.
 class ModelFetcher
 {
 public:
-    /// Maximum number of requested models; further ones are ignored.
+    /// Maximum number of fetched models; further requests are ignored.
     static constexpr std::size_t kMaxModels = 256;
 
-    /// All arguments must outlive the fetcher and the use of the shelf; `domain` must have been
-    /// joined as Party::both.
+    /// All arguments must outlive the fetcher. `domain` must have been joined as Party::both.
     [[nodiscard]] static Result<std::unique_ptr<ModelFetcher>, Refusal>
     create(const dds::Domain& domain, ModelShelf& shelf, Log log);
     ModelFetcher(const ModelFetcher&) = delete;
     ModelFetcher& operator=(const ModelFetcher&) = delete;
     ~ModelFetcher();
 
-    /// Requests a model, unless it is on the shelf already.
+    /// Requests a model, unless the shelf has it.
     void look_for(const ContentHash& hash);
-    /// Takes arrivals and requests missing data. Never waits.
+    /// Takes arrivals and requests missing data. Never waits; call it often.
     void step();
-    /// True while data are in transit: step again soon.
+    /// True while data are in transit: call step() again soon.
     [[nodiscard]] bool is_busy() const;
 
 private:

@@ -37,7 +37,7 @@ public:
 private:
     ModelStore store_;
     std::string name_;
-    std::mutex mutex_; ///< A store belongs to one thread at a time.
+    std::mutex mutex_; ///< For store_, which one thread at a time may use.
 };
 
 } // namespace

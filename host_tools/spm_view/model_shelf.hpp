@@ -16,7 +16,7 @@
 namespace tactus::view
 {
 
-/// The viewer's models by hash: those of files, and those added later. None is ever removed. Any
+/// The viewer's models by their hash, from files or added later. Models are never removed. Any
 /// thread.
 class ModelShelf
 {
@@ -25,9 +25,9 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<ModelShelf>, Refusal>
     open(std::span<const std::string> files);
 
-    /// Adds a model, unless one with its hash is present.
+    /// Adds a model, unless the shelf has one with its hash.
     void add(std::shared_ptr<KnownModel> model);
-    /// Marks a model as in transit.
+    /// Records that a model is being fetched, for is_coming().
     void announce(const ContentHash& hash);
 
     struct Label
@@ -40,7 +40,7 @@ public:
     [[nodiscard]] bool has(const ContentHash& hash) const { return find(hash) != nullptr; }
     [[nodiscard]] bool is_coming(const ContentHash& hash) const;
 
-    /// The model; null if it is missing.
+    /// The model with this hash; null if there is none.
     [[nodiscard]] std::shared_ptr<KnownModel> find(const ContentHash& hash) const;
 
 private:

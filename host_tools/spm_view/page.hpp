@@ -7,7 +7,7 @@
 namespace tactus::view
 {
 
-/// A file of the page, from host_tools/spm_view/page.
+/// A file of host_tools/spm_view/page, compiled into the program.
 struct PageFile
 {
     const char* url;

@@ -29,14 +29,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kKindNames{"exact", "separated", "bounded", "stale", "within_tolerance"};
 
-/// Names of FrontTimes, the stages first.
+/// Name of member `i` of RefinementState::times: the stages, the frame, its CPU time.
 const char* time_name(std::size_t i)
 {
     constexpr std::array<const char*, 2> others{"frame", "cpu"};
     return i < kStages ? kStageNames[i] : others[i - kStages];
 }
 
-/// Number; null if infinite, which JSON cannot represent.
+/// JSON number; null for an infinite value, which JSON cannot represent.
 Json number_of(double value)
 {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -96,7 +96,7 @@ Json pairs_json(const Telemetry& telemetry)
     {
         const PairTelemetry& pair = telemetry.pairs[i];
         pairs.push_back({{"tool", pair.tool},
-                         {"host", fmt::format("{:016x}", pair.host_epoch)},
+                         {"server", fmt::format("{:016x}", pair.server_epoch)},
                          {"object", pair.object},
                          {"kind", kKindNames[static_cast<std::size_t>(pair.kind)]},
                          {"lower_m", number_of(pair.lower_m)},
@@ -118,7 +118,7 @@ Json models_json(const dds::WatchedController& told)
                           {"hash", hash_text(told.models[i].hash)},
                           {"pages", pool(model.pages)},
                           {"faces", pool(model.faces)},
-                          {"host_gone", model.host_gone},
+                          {"server_gone", model.server_gone},
                           {"is_static", model.is_static},
                           {"pieces", model.pieces},
                           {"piece_wait_ms", static_cast<double>(model.piece_wait_ns) * 1e-6}});
@@ -164,7 +164,7 @@ Json objects_json(const LiveController& controller)
     Json objects = Json::array();
     for (const SeenObject& seen : controller.objects)
     {
-        objects.push_back({{"host", fmt::format("{:016x}", seen.object.host_epoch)},
+        objects.push_back({{"server", fmt::format("{:016x}", seen.object.server_epoch)},
                            {"object", seen.object.object},
                            {"number", seen.object.number},
                            {"name", seen.name},
@@ -241,35 +241,34 @@ Json controller_json(const LiveController& controller, const ModelShelf& shelf)
             {"front", refinement_state_json(controller, shelf)}};
 }
 
-/// Reason why nothing is visible; empty if there is none.
+/// Reason why the page shows no surface; empty if it shows one.
 std::string waits_for(const LiveController* controller, const ModelShelf& shelf,
                       const std::string& chosen, std::uint32_t domain_id)
 {
     if (controller == nullptr)
     {
         return chosen.empty()
-                   ? fmt::format("a controller on DDS domain {0}: 'hrtc --model NAME --domain "
-                                 "{0}', or 'hrtc FILE --domain {0}', which without "
-                                 "--domain shows itself to no viewer",
-                                 domain_id)
-                   : "the chosen controller, which has gone";
+                   ? fmt::format(
+                         "a controller on DDS domain {0}: start 'hrtc --model NAME --domain {0}' "
+                         "or 'hrtc FILE --domain {0}' (with FILE, viewers need --domain)",
+                         domain_id)
+                   : "the chosen controller, which disconnected";
     }
     if (controller->front == nullptr)
     {
-        return fmt::format(
-            "{} to tell what it has refined: it runs with --no-refinement-state or is older "
-            "than this viewer",
-            controller->told.name);
+        return fmt::format("the refinement state of {}: the controller runs with "
+                           "--no-refinement-state or is older than this viewer",
+                           controller->told.name);
     }
     for (const RefinementStateModel& model : controller->front->front.models)
     {
         if (!shelf.has(model.hash))
         {
             return shelf.is_coming(model.hash)
-                       ? fmt::format("the base mesh of model {}, from its host",
+                       ? fmt::format("the base mesh of model {}, from its server",
                                      hash_text(model.hash))
-                       : fmt::format("the model {}: nobody publishes it here; give its file to "
-                                     "spm_view",
+                       : fmt::format("the model {}: no server publishes it on this domain; give "
+                                     "its file to spm_view",
                                      hash_text(model.hash));
         }
     }
@@ -321,7 +320,7 @@ std::string state_json(const Snapshot& snapshot, const ModelShelf& shelf, const 
                      {"film", films == nullptr ? Json(nullptr) : films_json(*films)},
                      {"controller",
                       controller == nullptr ? Json(nullptr) : controller_json(*controller, shelf)}};
-    // A file's name may not be UTF-8.
+    // Names of files may not be UTF-8; invalid bytes are replaced.
     return state.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 

@@ -8,18 +8,18 @@
 
 #include <string>
 
-// Any thread: functions of their arguments alone; they allocate.
+// Any thread: results depend on the arguments alone. Strings allocate.
 namespace tactus::view
 {
 
-/// A snapshot as one line of JSON (docs/view.md): all controllers, and all data of the controller
-/// `chosen` (empty: the first one). `domain_id` is that of the program. With `films`, the snapshot
-/// is from those, and the line contains data about them.
+/// Snapshot as one line of JSON (docs/view.md): all controllers, and all data of the controller
+/// with the id `chosen` (empty: the first one). `domain_id` is the program's DDS domain. With
+/// `films`, the snapshot must be from these, and the line has their data too.
 [[nodiscard]] std::string state_json(const Snapshot& snapshot, const ModelShelf& shelf,
                                      const std::string& chosen, std::uint32_t domain_id,
                                      const Films* films = nullptr);
 
-/// A snapshot in the text format of Prometheus: counts and gauges of each controller.
+/// Snapshot in the text format of Prometheus: counters and gauges of each controller.
 [[nodiscard]] std::string metrics_text(const Snapshot& snapshot);
 
 } // namespace tactus::view

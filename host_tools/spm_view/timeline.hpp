@@ -9,16 +9,16 @@
 #include <utility>
 #include <vector>
 
-// Any thread: a value; setting allocates.
+// Any thread: a value; set() allocates.
 namespace tactus::view
 {
 
-/// A value that changes from time to time, with the frames of its changes.
+/// A value as a function of the frame, stored as its changes.
 template <typename T, typename Equal = std::equal_to<T>>
 class Timeline
 {
 public:
-    /// Sets the value from this frame on, which must not be before the last one set.
+    /// Sets the value from `frame` on. Frames must not decrease from call to call.
     void set(std::uint64_t frame, const T& value)
     {
         if (steps_.empty() || !Equal{}(steps_.back().second, value))
@@ -26,7 +26,7 @@ public:
             steps_.emplace_back(frame, value);
         }
     }
-    /// Value at a frame; null before the first.
+    /// Value at a frame; null before the first set().
     [[nodiscard]] const T* at(std::uint64_t frame) const
     {
         const auto next =

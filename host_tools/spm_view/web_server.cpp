@@ -40,19 +40,19 @@ using web::answer;
 using web::LoopbackServer;
 using Clock = std::chrono::steady_clock;
 
-/// Interval of the events of one viewer.
+/// Shortest interval between two events to one viewer.
 constexpr milliseconds kEventPeriod{50};
-/// Interval of events without news, which detect a viewer that is gone.
+/// Longest interval between two events; one without news detects that a viewer is gone.
 constexpr milliseconds kHeartbeat{1'000};
-/// Interval of the checks for the end.
+/// Interval at which waiting threads check whether the server ends.
 constexpr milliseconds kLook{100};
 /// Maximum number of states in one answer of /states.
 constexpr std::uint64_t kStatesMax = 200;
-/// Number of built answers that are kept for other viewers.
+/// Maximum number of kept answers of send_built(), which other viewers may request too.
 constexpr std::size_t kKeptAnswers = 16;
 
-/// Result of `tell` for the cut of the model in the refinement state, or for the part of it that
-/// can be shown.
+/// Returns `tell(decoded model, pages)` for the model's cut in a refinement state. If the state
+/// lacks pages (`is_whole` false), the pages have only the records that can be split without those.
 template <typename Tell>
 Result<std::string, Refusal> with_cut(KnownModel& model, const RefinementStateModel& front,
                                       bool is_whole, const Tell& tell)
@@ -101,8 +101,8 @@ struct WebServer::Inside
     void send_states(const httplib::Request& request, httplib::Response& response) const;
     void send_events(const httplib::Request& request, httplib::Response& response);
     bool send_next(httplib::DataSink& sink, const std::string& chosen, std::uint64_t& seen);
-    /// Builder of an answer about one model of a refinement state; `what` in send_built() names its
-    /// kind. `is_whole`: the state has all pages of the controller.
+    /// Builds the bytes of an answer about one model of a refinement state. `is_whole` is true if
+    /// the state has all pages of the controller.
     using Build = std::function<Result<std::string, Refusal>(
         KnownModel&, const RefinementStateModel&, bool is_whole)>;
     void send_built(const httplib::Request& request, httplib::Response& response,
@@ -130,8 +130,9 @@ std::optional<Refusal> WebServer::Inside::read_libraries()
         std::string text{std::istreambuf_iterator<char>(file), {}};
         if (!file || text.empty())
         {
-            return Refusal{path.string() + " can't be read; it is of Debian's libjs-three and "
-                                           "libjs-dygraphs"};
+            return Refusal{
+                path.string() +
+                " can't be read; install Debian's packages libjs-three and libjs-dygraphs"};
         }
         libraries[library.url] = std::move(text);
     }
@@ -147,7 +148,7 @@ void WebServer::Inside::declare_answers()
         server.Get(file.url, [&file](const Request&, Response& response)
                    { response.set_content(file.text, file.type); });
     }
-    // Browsers request it by themselves.
+    // Browsers request the icon without a link to it.
     server.Get("/favicon.ico", [](const Request&, Response& response) { response.status = 204; });
     for (const Library& library : kLibraries)
     {
@@ -218,7 +219,7 @@ std::string WebServer::Inside::state_for(const httplib::Request& request) const
     return state_json(parts.films->at(frame), parts.shelf, chosen, parts.domain, parts.films);
 }
 
-/// Sends frames of the films up to one, at a fixed spacing.
+/// Sends `count` states of the films, `step` frames apart; the last one is that of `frame`.
 void WebServer::Inside::send_states(const httplib::Request& request,
                                     httplib::Response& response) const
 {
@@ -255,7 +256,7 @@ void WebServer::Inside::send_events(const httplib::Request& request, httplib::Re
     {
         viewers.fetch_sub(1);
         response.set_header("Retry-After", "5");
-        answer(response, 503, fmt::format("{} viewers are watching; close one", kViewersMax));
+        answer(response, 503, fmt::format("{} viewers are connected; close one", kViewersMax));
         return;
     }
     const std::string chosen = request.get_param_value("controller");
@@ -266,8 +267,8 @@ void WebServer::Inside::send_events(const httplib::Request& request, httplib::Re
         [this](bool) { viewers.fetch_sub(1); });
 }
 
-/// Sends one event, the first one at once. Each is the whole state, so that a slow viewer skips
-/// some and receives no old ones. `seen`: serial of the last one.
+/// Waits for news and sends one event with the whole newest state, so that a slow viewer skips
+/// states and gets no old ones. `seen` is the serial of the last state sent.
 bool WebServer::Inside::send_next(httplib::DataSink& sink, const std::string& chosen,
                                   std::uint64_t& seen)
 {
@@ -300,7 +301,7 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
     const auto hash = parse_hash(request.get_param_value("model"));
     if (!serial || !hash)
     {
-        answer(response, 400, "this needs controller=ID&serial=NUMBER&model=HASH");
+        answer(response, 400, "controller=ID&serial=NUMBER&model=HASH is needed");
         return;
     }
     const std::string controller = request.get_param_value("controller");
@@ -310,14 +311,14 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
     if (seen == nullptr || model == nullptr)
     {
         answer(response, 404,
-               seen == nullptr ? "this refinement state isn't kept any more"
-                               : "the model isn't here");
+               seen == nullptr ? "this refinement state is no longer kept"
+                               : "the model is not loaded");
         return;
     }
     const auto found = std::ranges::find(seen->front.models, *hash, &RefinementStateModel::hash);
     const RefinementStateModel front =
         found == seen->front.models.end() ? RefinementStateModel{*hash, {}, {}} : *found;
-    // Boxes of chunks depend on the chunks, split or not.
+    // Boxes of chunks depend on the numbers of the chunks, not on the split records.
     std::uint64_t chunks = 0xCBF2'9CE4'8422'2325U;
     for (const ChunkId chunk : what == "loaded"      ? chunks_of(front.pages)
                                : what == "requested" ? front.requested

@@ -14,28 +14,28 @@
 namespace tactus::view
 {
 
-/// Serves the page and its data on this machine's loopback only (docs/view.md). Read-only: no
-/// request can change a controller.
+/// Serves the page and its data on this machine's loopback interface (docs/view.md). No request can
+/// change a controller.
 class WebServer
 {
 public:
-    /// Maximum number of browsers that listen to events at once; each holds a thread.
+    /// Maximum number of browsers that receive events at the same time; each takes a thread.
     static constexpr std::size_t kViewersMax = 4;
-    /// Number of threads: with all viewers present, four remain for other requests.
+    /// Number of threads: four more than viewers, for other requests.
     static constexpr std::size_t kThreads = kViewersMax + 4;
 
     struct Parts
     {
         const LiveState& live;
         ModelShelf& shelf;
-        std::uint32_t domain{0};         ///< Domain shown on the page.
+        std::uint32_t domain{0};         ///< Number of the DDS domain that the page shows.
         std::filesystem::path libraries; ///< Folder with three and dygraphs.
-        const Films* films{nullptr};     ///< Films to show in place of live data; may be null.
+        const Films* films{nullptr};     ///< Films in place of live data; null: live data.
     };
 
-    /// Listens on 127.0.0.1 until it is destroyed, which takes some 100 ms. `parts` must outlive
-    /// it. Port 0: any free one. Refused if the port is not available or a library's file is
-    /// missing.
+    /// Listens on 127.0.0.1 until it is destroyed, which takes about 100 ms. The objects in `parts`
+    /// must outlive the server. Port 0 takes any free port. Refused if the port is not free or the
+    /// file of a library is missing.
     [[nodiscard]] static Result<std::unique_ptr<WebServer>, Refusal> start(const Parts& parts,
                                                                            std::uint16_t port);
     WebServer(const WebServer&) = delete;

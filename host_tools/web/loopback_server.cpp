@@ -33,7 +33,7 @@ const httplib::Headers& safe_headers()
     return headers;
 }
 
-/// Threads of the library, with a report of each connection that waits for one.
+/// Thread pool for cpp-httplib that reports each waiting connection to `connections`.
 class Threads final : public httplib::TaskQueue
 {
 public:
@@ -62,7 +62,7 @@ private:
 
 PatientServer::PatientServer(std::size_t threads) : connections_(threads)
 {
-    // The library owns it.
+    // cpp-httplib takes ownership of the result.
     new_task_queue = [this, threads] { return new Threads(threads, connections_); };
 }
 
@@ -93,8 +93,8 @@ LoopbackServer::LoopbackServer(std::size_t threads) : server_(threads)
     server_.set_pre_routing_handler(
         [this](const Request& request, Response& response)
         {
-            // Range requests are dropped: a kilobyte can name hundreds of ranges, each as large as
-            // the whole. The library continues with this same request.
+            // Ranges are ignored: a request of 1 KB may name hundreds of ranges, each as large as
+            // the whole answer. cpp-httplib continues with this changed request.
             const_cast<Request&>(request).ranges.clear();
             return is_refused(request, response) ? httplib::Server::HandlerResponse::Handled
                                                  : httplib::Server::HandlerResponse::Unhandled;
@@ -104,7 +104,7 @@ LoopbackServer::LoopbackServer(std::size_t threads) : server_(threads)
         {
             if (response.body.empty())
             {
-                answer(response, response.status, "there is nothing here");
+                answer(response, response.status, "not found");
             }
         });
 }
@@ -115,7 +115,8 @@ LoopbackServer::~LoopbackServer()
     {
         return;
     }
-    while (!server_.is_running() && !has_ended_) // stop() has no effect before the server runs.
+    // stop() has no effect on a server that does not run yet.
+    while (!server_.is_running() && !has_ended_)
     {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -125,7 +126,7 @@ LoopbackServer::~LoopbackServer()
 
 std::optional<Refusal> LoopbackServer::start(std::uint16_t port, const char* option)
 {
-    // The library's own options let a second server take the same port and part of the connections.
+    // cpp-httplib's default options let a second server take connections of the same port.
     socket_t listening = -1;
     server_.set_socket_options(
         [&listening](socket_t socket)
@@ -140,11 +141,11 @@ std::optional<Refusal> LoopbackServer::start(std::uint16_t port, const char* opt
                         : (port == 0 ? server_.bind_to_any_port("127.0.0.1") : -1);
     if (got <= 0)
     {
-        return Refusal{fmt::format("port {} of 127.0.0.1 can't be had: {}; give another with {}, "
-                                   "0 for any",
-                                   port, std::strerror(errno), option)};
+        return Refusal{fmt::format(
+            "port {} of 127.0.0.1 is not available: {}; set another with {}, 0 for any free port",
+            port, std::strerror(errno), option)};
     }
-    // The library's backlog is 5: the sixth connection of a burst would wait for seconds.
+    // cpp-httplib's backlog is 5: the sixth connection of a burst would wait for seconds.
     ::listen(listening, SOMAXCONN);
 #ifdef TCP_DEFER_ACCEPT // Linux: a silent connection gets no thread.
     const int seconds = static_cast<int>(PeerStream::kRequestPatience.count());
@@ -167,18 +168,19 @@ bool LoopbackServer::is_ours(const std::string& authority) const
            authority == fmt::format("localhost:{}", port_);
 }
 
-/// Refuses other web pages, and foreign host names that point to this machine.
+/// Refuses methods other than GET, other host names for this machine, and other pages.
 bool LoopbackServer::is_refused(const httplib::Request& request, httplib::Response& response)
 {
     if (request.method != "GET")
     {
         response.set_header("Allow", "GET");
-        answer(response, 405, "only GET");
+        answer(response, 405, "only GET is allowed");
         return true;
     }
     if (request.get_header_value_count("Host") != 1 || !is_ours(request.get_header_value("Host")))
     {
-        answer(response, 421, fmt::format("this is 127.0.0.1:{} and no other host", port_));
+        answer(response, 421,
+               fmt::format("the Host header must name this server, 127.0.0.1:{}", port_));
         return true;
     }
     const std::string origin = request.get_header_value("Origin");
@@ -186,7 +188,7 @@ bool LoopbackServer::is_refused(const httplib::Request& request, httplib::Respon
     if (request.has_header("Origin") &&
         (!origin.starts_with(scheme) || !is_ours(origin.substr(scheme.size()))))
     {
-        answer(response, 403, "not for other pages");
+        answer(response, 403, "requests from other pages are refused");
         return true;
     }
     return false;

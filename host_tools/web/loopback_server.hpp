@@ -16,13 +16,13 @@
 namespace tactus::web
 {
 
-/// Content type of Prometheus' text format.
+/// HTTP content type of the text format of Prometheus.
 inline constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 
-/// Answers with a line of text.
+/// Sets the response to a status and a line of plain text.
 void answer(httplib::Response& response, int status, const std::string& text);
 
-/// The library's server with connections that yield to others (Connections).
+/// cpp-httplib's server, whose connections give up their threads to others (Connections).
 class PatientServer final : public httplib::Server
 {
 public:
@@ -34,22 +34,22 @@ private:
     Connections connections_;
 };
 
-/// HTTP server on this machine's loopback: GET only, no other Host name, no ranges, no cross-origin
-/// use, no foreign content in its pages, no connection that idles while another one waits. Declare
-/// its answers on server() before start().
+/// HTTP server on this machine's loopback interface. Accepts only GET and its own Host name,
+/// ignores ranges, refuses requests and content of other origins, and closes idle connections while
+/// others wait. Declare its answers on server() before start().
 class LoopbackServer
 {
 public:
     explicit LoopbackServer(std::size_t threads);
     LoopbackServer(const LoopbackServer&) = delete;
     LoopbackServer& operator=(const LoopbackServer&) = delete;
-    /// Waits for the requests being answered.
+    /// Waits until the requests in progress are answered.
     ~LoopbackServer();
 
     [[nodiscard]] httplib::Server& server() noexcept { return server_; }
 
-    /// Listens on 127.0.0.1, on its own thread. Port 0: any free one. Refused if the port is not
-    /// available; the message recommends `option` for another one.
+    /// Listens on 127.0.0.1, on a thread of its own. Port 0 takes any free port. Refused if the
+    /// port is not free; the message names `option`, which sets another port.
     [[nodiscard]] std::optional<Refusal> start(std::uint16_t port, const char* option);
 
     [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
@@ -60,7 +60,7 @@ private:
 
     PatientServer server_;
     std::uint16_t port_{0};
-    /// True once the listener has ended, possibly because accept() failed.
+    /// True once the listening thread has ended, for example because accept() failed.
     std::atomic<bool> has_ended_{false};
     std::thread listener_;
 };

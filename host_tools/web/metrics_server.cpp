@@ -13,7 +13,7 @@ namespace tactus::web
 namespace
 {
 
-/// One scraper and one person at once, and silent connections that yield one by one.
+/// Enough for a scraper and a person; silent connections are closed if others wait.
 constexpr std::size_t kThreads = 6;
 
 } // namespace

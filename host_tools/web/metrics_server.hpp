@@ -12,20 +12,20 @@
 namespace tactus::web
 {
 
-/// Serves /metrics for Prometheus on this machine's loopback: the newest published text. Its own
-/// threads answer requests and never wait for the caller.
+/// Serves /metrics for Prometheus on this machine's loopback interface: the newest published text.
+/// Answers on threads of its own, which never wait for the caller.
 class MetricsServer
 {
 public:
-    /// Port 0: any free one. Refused if the port is not available; `option` is the option that set
-    /// it.
+    /// Starts the server. Port 0 takes any free port. Refused if the port is not free; the message
+    /// names `option`, which sets another port.
     [[nodiscard]] static Result<std::unique_ptr<MetricsServer>, Refusal> start(std::uint16_t port,
                                                                                const char* option);
     MetricsServer(const MetricsServer&) = delete;
     MetricsServer& operator=(const MetricsServer&) = delete;
     ~MetricsServer();
 
-    /// Sets the text of further answers. Any thread.
+    /// Sets the text of all later answers. Any thread.
     void publish(std::string text);
     [[nodiscard]] std::uint16_t port() const noexcept;
 

@@ -16,8 +16,8 @@ namespace tactus::web
 namespace
 {
 
-/// Time for a peer to send its request, divided by the number waiting: a peer that waited for a
-/// thread has sent it meanwhile.
+/// Longest wait for a peer while other connections need a thread, divided by 1 + their number; at
+/// least 1 ms.
 constexpr std::chrono::milliseconds kGrace{40};
 
 bool is_transient(int error)
@@ -61,7 +61,7 @@ void Connections::end_all()
     }
 }
 
-/// Ends the longest wait for a peer, and all its later ones.
+/// Closes the connection that has waited longest for its peer.
 void Connections::end_longest_wait()
 {
     Served* longest = nullptr;
@@ -87,7 +87,7 @@ Connections::Served& Connections::served(int socket)
 bool Connections::wait(int socket, short events, Clock::time_point deadline)
 {
     pollfd peer{socket, events, 0};
-    if (::poll(&peer, 1, 0) > 0) // The peer is ready, so no other one is delayed.
+    if (::poll(&peer, 1, 0) > 0) // No wait, so no other connection is delayed.
     {
         return true;
     }
@@ -127,7 +127,7 @@ bool PeerStream::is_writable() const
                              answer_end_.value_or(Clock::now() + kAnswerPatience));
 }
 
-/// Fills the buffer, which must be empty.
+/// Receives bytes into the buffer, which must be empty. False if there are none in time.
 bool PeerStream::fill()
 {
     while (received_ < kRequestMax && connections_.wait(socket_, POLLIN, request_end_))
@@ -185,7 +185,7 @@ ssize_t PeerStream::write(const char* bytes, std::size_t size)
     return -1;
 }
 
-/// Loopback address; ports are never requested.
+/// Gives the loopback address, and 0 for the port, which cpp-httplib never uses.
 void PeerStream::get_remote_ip_and_port(std::string& ip, int& port) const
 {
     ip = "127.0.0.1";

@@ -14,10 +14,10 @@
 namespace tactus::web
 {
 
-/// Connections of a server: those with a thread, and the number of those without. All come from
-/// this machine's loopback, so addresses do not distinguish peers. If a connection arrives while
-/// all threads are taken, the one that has kept its thread waiting longest gives it up: no number
-/// of silent or slow peers keeps an honest one out. Any thread.
+/// Connections of a server: those with a thread, and the number that wait for one. All come from
+/// this machine, so addresses do not distinguish peers. If a connection waits for a thread, the one
+/// that has waited longest for its peer is closed, so silent or slow peers cannot keep others out.
+/// Any thread.
 class Connections
 {
 public:
@@ -27,22 +27,23 @@ public:
 
     /// Records a connection that waits for a thread.
     void arrive();
-    /// Records that a connection has a thread.
+    /// Records that a waiting connection got a thread.
     void begin(int socket);
     /// Records that a connection ended; the caller closes its socket.
     void end(int socket);
-    /// Ends the wait for all peers, when the server stops.
+    /// Closes all connections for input and output, and ends all waits, when the server stops.
     void end_all();
 
-    /// Waits for the peer until its socket is ready for these events of poll(). False at the
-    /// deadline, or if the connection has given up its thread.
+    /// Waits until the peer makes the socket ready for `events` (as of poll()). False at the
+    /// deadline, or if the connection was closed in favour of another. The deadline is sooner if
+    /// others wait.
     [[nodiscard]] bool wait(int socket, short events, Clock::time_point deadline);
 
 private:
     struct Served
     {
         int socket{-1};
-        /// Start of the wait for the peer; none while its thread works.
+        /// Start of the present wait for the peer; none if there is no wait.
         std::optional<Clock::time_point> waits_since;
     };
 
@@ -51,14 +52,14 @@ private:
 
     std::mutex mutex_;
     const std::size_t threads_;
-    std::size_t queued_{0}; ///< Connections without a thread.
+    std::size_t queued_{0}; ///< Number of connections that wait for a thread.
     bool is_ended_{false};
     std::vector<Served> served_;
 };
 
-/// Stream of a connection for the library. The whole request must arrive within kRequestPatience
-/// and kRequestMax, and each part of the answer must be taken within kAnswerPatience after the one
-/// before.
+/// Stream of one connection, for cpp-httplib. The whole request must arrive within kRequestPatience
+/// and have at most kRequestMax bytes. The peer must take each part of the answer within
+/// kAnswerPatience.
 class PeerStream final : public httplib::Stream
 {
 public:
@@ -84,7 +85,7 @@ private:
     Connections& connections_;
     int socket_;
     Clock::time_point request_end_{Clock::now() + kRequestPatience};
-    std::optional<Clock::time_point> answer_end_; ///< Deadline of the present part.
+    std::optional<Clock::time_point> answer_end_; ///< Deadline for the part that is being sent.
     std::array<char, 4'096> buffer_{};
     std::size_t begin_{0}; ///< First unread byte of the buffer.
     std::size_t end_{0};

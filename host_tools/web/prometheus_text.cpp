@@ -40,26 +40,26 @@ const std::vector<Metric>& metrics()
     const auto count = [](std::uint64_t Telemetry::*which)
     { return [which](const Telemetry& t) { return static_cast<double>(t.*which); }; };
     static const std::vector<Metric> all{
-        {"tactus_frames_total", "counter", "Frames run.", count(&Telemetry::frame)},
-        {"tactus_frames_exact_total", "counter", "Frames whose answers are exact.",
+        {"tactus_frames_total", "counter", "Frames computed.", count(&Telemetry::frame)},
+        {"tactus_frames_exact_total", "counter", "Frames with exact answers.",
          count(&Telemetry::exact)},
         {"tactus_frames_separated_total", "counter", "Frames with separated answers.",
          count(&Telemetry::separated)},
-        {"tactus_frames_within_tolerance_total", "counter",
-         "Frames with coarser faces of small error for the surface.",
+        {"tactus_frames_within_tolerance_total", "counter", "Frames with answers within tolerance.",
          count(&Telemetry::within_tolerance)},
         {"tactus_frames_bounded_total", "counter", "Frames with bounded answers.",
          count(&Telemetry::bounded)},
         {"tactus_frames_stale_total", "counter", "Frames with a stale answer.",
          count(&Telemetry::stale)},
-        {"tactus_deadlines_missed_total", "counter", "Deadlines missed.",
+        {"tactus_deadlines_missed_total", "counter", "Missed deadlines.",
          count(&Telemetry::missed)},
-        {"tactus_deadlines_overruns_total", "counter", "Overruns of the loop, missed or not.",
+        {"tactus_deadlines_overruns_total", "counter",
+         "Overruns of the haptic loop, with or without a missed deadline.",
          count(&Telemetry::overruns)},
-        {"tactus_deadlines_latency_misses_total", "counter", "Deadlines missed without an overrun.",
+        {"tactus_deadlines_latency_misses_total", "counter", "Missed deadlines without an overrun.",
          count(&Telemetry::latency_misses)},
-        {"tactus_force_newtons", "gauge", "Largest force on a device now.", largest_force_n},
-        {"tactus_tools_in_contact", "gauge", "Tools in contact now.",
+        {"tactus_force_newtons", "gauge", "Largest present force on a device.", largest_force_n},
+        {"tactus_tools_in_contact", "gauge", "Tools in contact at present.",
          [](const Telemetry& t)
          {
              return static_cast<double>(std::ranges::count_if(

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-// Any thread: values; they allocate.
+// Any thread: these are values; they allocate.
 namespace tactus::web
 {
 
@@ -19,10 +19,10 @@ class PrometheusText
 public:
     using Labels = std::vector<std::pair<const char*, std::string>>;
 
-    /// Starts a metric; the following samples belong to it. `type` is counter or gauge; a counter's
-    /// name ends in _total. Each name once.
+    /// Begins a metric, to which the following samples belong. `type` is "counter" or "gauge"; the
+    /// name of a counter ends in _total. Each name may be used once.
     void family(const char* name, const char* type, const char* help);
-    /// Adds a sample. Values of labels may contain any text.
+    /// Adds a sample of the present metric. Values of labels may be any text.
     void sample(const Labels& labels, double value);
 
     [[nodiscard]] const std::string& text() const noexcept { return text_; }
@@ -32,7 +32,7 @@ private:
     const char* name_{""};
 };
 
-/// Adds the number of controllers, and counters and gauges of each.
+/// Adds the number of controllers, and the counters and gauges of each one.
 void tell_controllers(PrometheusText& text,
                       const std::vector<const dds::WatchedController*>& controllers);
 

@@ -117,7 +117,7 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_replay(const std::string& pa
     return as_device(std::move(device));
 }
 
-/// Device of the text; none if the text names no device.
+/// Device that the text gives; none if it gives no device.
 std::optional<DeviceChoice> device_named(std::string_view text)
 {
     constexpr std::string_view kSimulated = "sim:";
@@ -174,7 +174,7 @@ Refusal no_device(std::string_view text)
                 "to 65535"},
         {"dhd", "dhd, or dhd:INDEX with 0 to 63"},
         {"plugin", "plugin:FILE[,WORDS] with a library that has a TACTUS_DEVICE_PLUGIN"},
-        {"replay", "replay:FILE with what hrtc --record wrote"}};
+        {"replay", "replay:FILE with a recording of hrtc --record"}};
     for (const auto& [kind, forms] : kForms)
     {
         if (text.starts_with(kind))
@@ -251,7 +251,7 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& c
                 static_cast<int>(milliseconds(1'000) / UdpDeviceOptions::kAskEvery);
             if (++asked == kQuiet)
             {
-                log_line(fmt::format("waits for a driver that describes its device to {}:{}",
+                log_line(fmt::format("waiting for a driver to describe its device to {}:{}",
                                      choice.address, choice.port));
             }
             return !told || told();

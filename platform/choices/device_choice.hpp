@@ -36,16 +36,17 @@ enum class DeviceKind : std::uint8_t
 struct DeviceChoice
 {
     DeviceKind kind{DeviceKind::simulated};
-    DeviceLimits limits{kDeskClass};                         ///< Limits of a sim or DHD device.
-    std::string address{UdpDeviceOptions{}.address};         ///< Address of a UDP device.
-    int port{UdpDeviceOptions::kPortDefault};                ///< Port of a UDP device.
-    std::shared_ptr<const udp::Authenticator> authenticator; ///< Authenticator of a UDP device;
-                                                             ///< null without --device-key.
-    int index{0};                                            ///< Index of a DHD device.
-    std::string recording;                                   ///< File of a replayed device.
-    std::string library;                                     ///< Library of a plugin.
-    std::string words;                                       ///< Words for the plugin's device.
-    Similarity frame;                                        ///< Device coordinates in the world.
+    DeviceLimits limits{kDeskClass};                 ///< Limits of a sim or DHD device.
+    std::string address{UdpDeviceOptions{}.address}; ///< Address of a UDP device.
+    int port{UdpDeviceOptions::kPortDefault};        ///< Port of a UDP device.
+    /// Authenticator of a UDP device; null without --device-key.
+    std::shared_ptr<const udp::Authenticator> authenticator;
+    int index{0};          ///< Index of a DHD device.
+    std::string recording; ///< File of a replayed device.
+    std::string library;   ///< Library of a plugin.
+    std::string words;     ///< Words for the plugin's device.
+    /// Pose of the device's coordinates in the world.
+    Similarity frame;
 };
 
 /// Parses one of the forms that --help shows.
@@ -56,20 +57,21 @@ inline constexpr std::string_view kDeviceFaultForms =
     "KIND@FRAME+LENGTH with the kind jitter, dropout, stuck, nan, time_jump or disconnect, a frame "
     "of 0 to 1e9 and a length of 1 to 1e9 frames";
 
-/// Fault of the text; none if the text has none of kDeviceFaultForms.
+/// Device fault that the text gives; none if it has none of kDeviceFaultForms.
 [[nodiscard]] std::optional<DeviceFault> parse_device_fault(std::string_view text);
 
-/// Wait for a device that is still to connect or to be created.
+/// Limits of the wait for a device to connect or to be created.
 struct DeviceWait
 {
     Duration most;
-    std::function<bool()> goes_on; ///< Predicate, called during the wait. False ends the wait.
-                                   ///< Empty: the wait goes on.
-    std::int64_t rate_hz{1'000};   ///< Rate of the loop.
+    /// Called during the wait; false ends it. Empty: only `most` does.
+    std::function<bool()> goes_on;
+    std::int64_t rate_hz{1'000}; ///< Rate of the loop.
 };
 
 /// Opens a device that isn't simulated, for the tool with that index. Waits for a UDP device to
-/// connect, and reads a recording as a whole. `choice` and `clock` must outlive the device.
+/// connect; reads the whole recording of a replayed one. `choice` and `clock` must outlive the
+/// device.
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& choice,
                                                                          std::size_t tool,
                                                                          const DeviceWait& wait,
@@ -78,7 +80,8 @@ struct DeviceWait
 /// True if the device is attached to this machine and may hold a force after its program's end.
 [[nodiscard]] bool wants_guard(const DeviceChoice& choice) noexcept;
 
-/// Guard that brakes such a device, for the guardian's process. Null if the library has no guard.
+/// Guard that brakes a device of wants_guard(), for the guardian's process. Null if a plugin's
+/// library has no guard.
 [[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> open_guard(const DeviceChoice& choice,
                                                                        std::int64_t rate_hz);
 

@@ -18,23 +18,23 @@ struct SceneFile
 {
     std::vector<std::string> models; ///< Paths of the models; each once.
     std::vector<PlacedObject> objects;
-    std::vector<std::string> notes; ///< Notes on parts of the file that are not read.
+    std::vector<std::string> notes; ///< Notes on the parts of the file that were ignored.
 };
 
-/// Detection and readers of the files of graphics stations. The controller has none of its own; its
-/// program supplies them. Without them, no file counts as a mesh or a scene. Any thread.
+/// Functions that recognise and read mesh and scene files. The program sets them. The defaults
+/// recognise no file and refuse to read. Any thread.
 struct FileReaders
 {
     /// True if a file of this name is a mesh.
     bool (*is_mesh_name)(const std::string& path){[](const std::string&) { return false; }};
     /// True if a file of this name is a scene.
     bool (*is_scene_name)(const std::string& path){[](const std::string&) { return false; }};
-    /// Refusal of a mesh in the place of a model.
+    /// Message for a mesh file given as a model.
     std::string (*mesh_is_no_model)(const std::string& path){[](const std::string& path)
                                                              { return path; }};
-    /// Corners of a mesh, as in its file.
+    /// Reads the corners of a mesh, as in its file.
     Result<std::vector<Vec3>, Refusal> (*read_corners)(const std::string& path){no_corners};
-    /// Scene whose objects show models that already exist.
+    /// Reads a scene. The models of its objects must exist as files already.
     Result<SceneFile, Refusal> (*read_scene)(const std::string& path){no_scene};
 
 private:

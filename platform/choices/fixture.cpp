@@ -44,7 +44,7 @@ constexpr FixtureForm kFixtureForms[] = {
     {FixtureKind::gripper, {"gripper:X[,K[,F]]", kOfGripper}},
 };
 
-/// Count of the leading numbers that give the place and direction of a fixture.
+/// Number of leading numbers in the text that give the fixture's place and direction.
 std::size_t places_of(FixtureKind kind)
 {
     return kind == FixtureKind::gripper ? 1 : kind == FixtureKind::point ? 3 : 6;
@@ -81,7 +81,7 @@ Result<FixtureChoice, Refusal> parse_fixture(std::string_view text)
         const double length = fixture.direction.stableNorm();
         if (!(length > 0.0))
         {
-            return not_of_form(text, form->numbers.text, "its direction is 0,0,0");
+            return not_of_form(text, form->numbers.text, "the direction is 0,0,0");
         }
         fixture.direction /= length;
     }

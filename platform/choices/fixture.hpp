@@ -26,8 +26,8 @@ struct FixtureChoice
 {
     std::string words; ///< Text as given.
     FixtureKind kind{FixtureKind::point};
-    Vec3 at_m{0.0, 0.0, 0.0};      ///< Point, or a point on the line or plane. The x of a gripper
-                                   ///< fixture is its opening.
+    /// Point, or a point on the line or plane. The x of a gripper fixture is its opening.
+    Vec3 at_m{0.0, 0.0, 0.0};
     Vec3 direction{0.0, 0.0, 1.0}; ///< Direction of the line, or normal of the plane; unit length.
     double stiffness_n_per_m{100.0};
     double force_max_n{1.0};
@@ -38,9 +38,9 @@ struct FixtureChoice
 /// length.
 [[nodiscard]] Result<FixtureChoice, Refusal> parse_fixture(std::string_view text);
 
-/// Spring of limited force that guides a tool. Its energy is only the work that stretched it, so it
-/// is passive. It reports its stiffness, so the stiffness limit and passivity controller treat it
-/// as a wall.
+/// Spring of limited force that guides a tool. The spring returns no more energy than the work that
+/// stretched it, so it is passive. It reports its stiffness, so the stiffness limit and passivity
+/// controller treat it as a wall.
 ///
 /// If the device reports no position or opening, the last force stays. ForceFader fades it then.
 ///

@@ -17,7 +17,7 @@ struct PlacedObject
     std::size_t model{0}; ///< Index of its model in Options::models.
     Similarity place;
     Material material;
-    bool has_place{false}; ///< True if --place or the host has given the place.
+    bool has_place{false}; ///< True if --place or the server has given the place.
     bool has_material{false};
     std::string name; ///< Name in its scene; empty: none.
 };

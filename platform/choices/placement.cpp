@@ -17,8 +17,8 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Rotation matrix, orthonormal to 2e-15. Computed once for each object, as for a host's poses. No
-/// frame composes two rotations, so nothing can drift.
+/// Rotation matrix, orthonormal to 2e-15. Computed once for each object, as for a server's poses.
+/// No frame composes two rotations, so nothing can drift.
 Mat3 rotation_of(const Vec3& vector_deg)
 {
     const double angle_deg = vector_deg.norm();

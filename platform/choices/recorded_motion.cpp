@@ -24,12 +24,12 @@ std::optional<std::array<double, 3>> to_array(const std::optional<Vec3>& v)
     return v ? std::optional(tactus::to_array(*v)) : std::nullopt;
 }
 
-/// Sample as the device reported it. If the recorded rotation is none, the sample's is none, too.
+/// Sample as the device reported it; without a rotation if the device measured none.
 DeviceSample reading_of(const ToolState& state, const DeviceRecord& device)
 {
-    const DevicePose hand = device.hand.value_or(DevicePose{state.position_m, state.rotation});
+    const DevicePose pose = device.pose.value_or(DevicePose{state.position_m, state.rotation});
     DeviceSample reading;
-    reading.position_world_m = tactus::to_array(hand.position_m);
+    reading.position_world_m = tactus::to_array(pose.position_m);
     reading.velocity_world_m_per_s = to_array(device.velocity_m_per_s);
     reading.time = MonotonicTime{state.sample_time_ns};
     reading.connected = device.connected;
@@ -37,9 +37,9 @@ DeviceSample reading_of(const ToolState& state, const DeviceRecord& device)
     reading.deadman_held = device.deadman_held;
     if (device.measures_rotation)
     {
-        const bool is_sound = is_rotation(hand.rotation, kRotationTolerance);
+        const bool is_sound = is_rotation(pose.rotation, kRotationTolerance);
         reading.rotation_world =
-            is_sound ? to_quaternion(orthonormalised(hand.rotation)) : Quaternion{};
+            is_sound ? to_quaternion(orthonormalised(pose.rotation)) : Quaternion{};
     }
     reading.angular_velocity_world_rad_per_s = to_array(device.angular_velocity_rad_per_s);
     reading.buttons = device.buttons;
@@ -65,7 +65,7 @@ Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& pat
     ReplayDeviceOptions options;
     options.rate_hz = std::llround(1e9 / static_cast<double>(setup.period_ns));
     options.limits.force_max_n = setup.tools[played].force_max_n;
-    options.limits.rotation = kDeskTurn;
+    options.limits.rotation = kDeskRotation;
     options.limits.rotation.torque_max_nm = setup.tools[played].torque_max_nm;
     options.readings.reserve(recording.value().frame_count());
     FrameDecoder decoder(recording.value().shape());

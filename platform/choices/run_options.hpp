@@ -35,8 +35,8 @@ enum class TransportKind : std::uint8_t
 struct OperatorChoice
 {
     MotionKind motion{MotionKind::script};
-    std::string object; ///< Name of an object or of its model; empty: each operator gets another
-                        ///< object.
+    /// Name of an object or of its model; empty: each operator gets another object.
+    std::string object;
 };
 
 /// Options of one tool.
@@ -46,7 +46,7 @@ struct ToolOptions
     ToolLoad load;                   ///< Payload of the device.
     std::optional<FixtureChoice> fixture;
     DeviceChoice device;
-    OperatorChoice hand; ///< Operator of a simulated device.
+    OperatorChoice simulated; ///< Operator of a simulated device.
 
     /// Mesh model of the tool's shape; empty if the tool is no mesh.
     [[nodiscard]] std::string mesh_model() const
@@ -59,53 +59,55 @@ struct ToolOptions
 struct Options
 {
     FileReaders readers; ///< File readers of the program.
-    /// Models: NAME, NAME@HASH or NAME@SERVER, or paths with the file transport; each once.
+    /// Models, each once: NAME, NAME@HASH or NAME@SERVER; paths with the file transport.
     std::vector<std::string> models;
-    std::vector<PlacedObject> objects; ///< Objects by their numbers; each model is shown by at
-                                       ///< least one.
-    /// Scene, if not empty: a file, or with DDS the name of a host's scene or NAME@SERVER. Models
-    /// and objects are then the scene's; see scene_choice.hpp.
+    /// Objects by their numbers; each model is shown by at least one.
+    std::vector<PlacedObject> objects;
+    /// Scene: a file, or with DDS the name of a server's scene or NAME@SERVER; empty: none. The
+    /// scene gives models and objects then; see scene_choice.hpp.
     std::string scene;
     SceneMaterials scene_materials; ///< Materials of --material, which override the scene's.
-    std::uint32_t objects_max{0};   ///< Largest number of objects; 0: the number given.
+    /// Largest number of objects; 0: the number at the start, or for a server's scene
+    /// SceneRoom::of().
+    std::uint32_t objects_max{0};
     std::vector<ToolOptions> tools{1};
     std::vector<DeviceFault> device_faults; ///< Faults of every simulated device.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
-    bool is_watched{false};   ///< True if viewers of that domain can watch, also with models from
-                              ///< files.
-    std::string name;         ///< Name of the controller, with DDS; empty: hrtc-PID.
-    Failover failover;        ///< Servers that may replace a lost one; DDS only.
-    bool follows_poses{true}; ///< Objects take the poses that the hosts send.
+    /// True if viewers of that domain can watch, also with models from files.
+    bool is_watched{false};
+    std::string name;                  ///< Name of the controller, with DDS; empty: hrtc-PID.
+    Failover failover;                 ///< Servers that may replace a lost one; DDS only.
+    bool follows_poses{true};          ///< Objects take the poses that the servers send.
     bool shows_refinement_state{true}; ///< Sends the refinement state to viewers; DDS only.
-    double wait_s{10.0};               ///< Longest wait for a model that is not published yet, or
-                                       ///< for a device.
+    /// Longest wait for a device, or for a model that is not published yet.
+    double wait_s{10.0};
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
     std::vector<std::string> report_paths;
     std::string record_path;       ///< File of the recording; empty: none.
     std::string trace_path;        ///< File of the trace; empty: none.
     std::string histograms_folder; ///< Folder of the histograms; empty: none.
-    std::string replay_path;       ///< Recording to replay, if not empty. Only `kernels` and
-                                   ///< `export_paths` may be set beside it.
+    /// Recording to replay; empty: none. Only `kernels` and `export_paths` may be set beside it.
+    std::string replay_path;
     std::vector<std::string> export_paths; ///< Files of an export of the replay, for other tools.
     double pool_mib{2.0};
     double cache_mib{0.0};                 ///< Size of the cache; 0: the usual share of the pool.
     std::uint32_t splits{64};              ///< Most splits, and most merges, in a frame.
-    std::optional<double> frame_budget_us; ///< Budget of a frame; none: half of the period.
+    std::optional<double> frame_budget_us; ///< Time budget of a frame; none: half of the period.
     bool static_when_it_fits{true};
     Prediction prediction{Prediction::automatic};
     const Kernels* kernels{nullptr}; ///< Kernels of the queries; null: the best of the processor.
     double stiffness_n_per_m{500.0};
-    double angular_stiffness_nm_per_rad{0.0}; ///< Angular stiffness; 0: derived from the stiffness
-                                              ///< and the tool's size.
-    double shading_m{0.0};                    ///< Width of force shading; 0: facets are felt.
-    double force_tolerance_n{kForceToleranceUsual_n}; ///< Force tolerance of FrameSetup.
-    std::optional<double> speed_limit_m_per_s;        ///< Speed limit of the devices; none: each
-                                                      ///< device's own.
-    double object_speed_m_per_s{0.5};                 ///< Speed limit of objects near a tool.
-    std::optional<std::uint32_t> clutch_button;       ///< Number of the clutch button, the same on
-                                                      ///< every device.
+    /// Angular stiffness; 0: derived from the stiffness and the tool's size.
+    double angular_stiffness_nm_per_rad{0.0};
+    double shading_m{0.0}; ///< Width of force shading; 0: facets are felt.
+    double force_tolerance_n{kForceToleranceUsual_n}; ///< Value of FrameSetup::force_tolerance_n.
+    /// Speed limit of the devices; none: each device's own.
+    std::optional<double> speed_limit_m_per_s;
+    double object_speed_m_per_s{0.5}; ///< Speed limit of objects near a tool.
+    /// Number of the clutch button, the same on every device.
+    std::optional<std::uint32_t> clutch_button;
     /// Silent periods of the loop before the supervisor brakes. None: silent_periods() of the
     /// machine.
     std::optional<std::uint32_t> supervisor_periods;
@@ -113,13 +115,13 @@ struct Options
     std::optional<double> proxy_speed_m_per_s;
     double slew_share_per_ms{kSlewShare_per_ms}; ///< Slew rate of ChangeRule.
     bool trap_system_calls{false};
-    bool virtual_time{false}; ///< Virtual time, see LoopTime. Needs models from files, and
-                              ///< simulated or replayed devices.
-    bool strict{false};       ///< A run with losses or without a result counts as a failure.
-    std::string as_file;      ///< All options in the form of a --config file.
+    /// Virtual time, see LoopTime. Needs models from files, and simulated or replayed devices.
+    bool virtual_time{false};
+    bool strict{false};  ///< A run with losses or without a result counts as a failure.
+    std::string as_file; ///< All options in the form of a --config file.
     RtThreadOptions thread;
 
-    /// Name of a tool's option in a refusal. It includes the tool's number if there are several.
+    /// Name of a tool's option for a refusal, with the tool's number if there are several.
     [[nodiscard]] std::string of_tool(std::string_view option, std::size_t tool) const
     {
         return std::string(option) + (tools.size() > 1 ? " of tool " + std::to_string(tool) : "");
@@ -135,7 +137,7 @@ struct Options
         return frame_budget_us ? nanoseconds(static_cast<std::int64_t>(*frame_budget_us * 1e3))
                                : nanoseconds(period().ns / 2);
     }
-    /// Factor of the usual work that a frame may do, which depends on the shapes of the tools.
+    /// Factor by which a frame may do more than the usual work, from the tools' shapes.
     [[nodiscard]] std::uint32_t work_times() const noexcept
     {
         const auto any = [this](std::string ToolChoice::*file)

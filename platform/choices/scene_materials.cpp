@@ -17,7 +17,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Most names in a message; a scene may have thousands.
+/// Largest number of names in a message; a scene may have thousands.
 constexpr std::size_t kNamesTold = 8;
 
 } // namespace
@@ -42,8 +42,8 @@ std::string SceneMaterials::take(std::span<const std::string> options)
         const bool is_new = is_of_all ? !of_all_ : !of_one_.contains(name);
         if (!is_new)
         {
-            return is_of_all ? "--material: is given twice for all objects of the scene; "
-                               "OBJECT:MATERIAL is for one"
+            return is_of_all ? "--material: is given twice for all objects of the scene; use "
+                               "OBJECT:MATERIAL for one object"
                              : fmt::format("--material: is given twice for '{}'", printable(name));
         }
         if (is_of_all)

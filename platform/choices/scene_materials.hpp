@@ -23,10 +23,11 @@ public:
     /// fault; empty if there is none.
     [[nodiscard]] std::string take(std::span<const std::string> options);
 
-    /// Material of the object of this name, whose material in the scene is `said`.
+    /// Material of the object called `name`: the one given for that name, or else for all, or else
+    /// `said`, the object's material in the scene.
     [[nodiscard]] const Material& felt(std::string_view name, const Material& said) const;
 
-    /// Message on the first name that no object has; empty if all names exist.
+    /// Message on the first name with a material that none of `objects` has; empty if all have one.
     [[nodiscard]] std::string missing(std::span<const std::string> objects) const;
 
 private:

@@ -44,8 +44,8 @@ constexpr NumberRange kCentreRange{-kLengthMax_m, kLengthMax_m, "m"};
 constexpr NumberRange kOfMass[] = {{0.0, 5.0, "kg"}, kCentreRange, kCentreRange, kCentreRange};
 constexpr NumberForm kMassForm{"KG[,X,Y,Z]", kOfMass};
 
-/// Parses "NAME[,R]" after the form's word. Text after the last comma belongs to the name unless it
-/// is a number.
+/// Parses the rest of "hull:NAME[,R]" or "mesh:NAME[,R]". Text after the last comma belongs to the
+/// name unless it is a number.
 std::optional<Refusal> take_name(std::string_view text, std::string_view form, std::string& name,
                                  double& radius_m)
 {
@@ -55,17 +55,17 @@ std::optional<Refusal> take_name(std::string_view text, std::string_view form, s
         comma == std::string_view::npos ? std::nullopt : parse_number(rest.substr(comma + 1));
     name = radius ? rest.substr(0, comma) : rest;
     radius_m = radius.value_or(0.0);
-    const std::string fault = name.empty() ? "its name is missing"
+    const std::string fault = name.empty() ? "the name is missing"
                               : radius ? fault_of_number("R", rest.substr(comma + 1), kRoundRange)
                                        : "";
     return fault.empty() ? std::nullopt : std::optional(not_of_form(text, form, fault));
 }
 
-/// Synonyms of the forms' words.
+/// Synonyms of tool words, each with the word that a refusal proposes.
 constexpr std::pair<std::string_view, std::string_view> kOtherWords[] = {
     {"ball", "sphere"}, {"cube", "box"}, {"cuboid", "box"}, {"cylinder", "capsule"}};
 
-/// Refusal of a text that begins with no tool's word.
+/// Refusal of a text that begins with no tool word.
 Refusal no_tool(std::string_view text)
 {
     constexpr std::string_view kWords[] = {"point", "sphere", "capsule", "box", "hull", "mesh"};
@@ -83,7 +83,7 @@ Refusal no_tool(std::string_view text)
                               printable(meant))};
 }
 
-/// `option` is the option's name in a refusal.
+/// Reads the hull's file and sets the core. `option`: the option's name for a refusal.
 std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers,
                                  const std::string& option)
 {
@@ -92,7 +92,8 @@ std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers,
     {
         return failure(fmt::format("{}: {}", option, corners.error().text));
     }
-    std::set<std::tuple<double, double, double>> points; // Files repeat corners.
+    // Files repeat corners; a set keeps each once.
+    std::set<std::tuple<double, double, double>> points;
     for (const Vec3& p : corners.value())
     {
         points.emplace(p[0], p[1], p[2]);
@@ -126,8 +127,9 @@ std::optional<Refusal> add_model(ToolChoice& tool, Options& options, const std::
     if (std::ranges::any_of(options.objects,
                             [model](const PlacedObject& object) { return object.model == model; }))
     {
-        return failure(fmt::format("{}: '{}' is touched as well; a tool needs a model of its own",
-                                   option, tool.mesh_model));
+        return failure(
+            fmt::format("{}: '{}' is the model of an object as well; a tool needs its own model",
+                        option, tool.mesh_model));
     }
     if (known == options.models.end())
     {
@@ -233,9 +235,9 @@ std::optional<Refusal> take_tool_files(Options& options)
     }
     return options.models.size() <= kMaxModels
                ? std::nullopt
-               : std::optional(failure(fmt::format("--tool: {} models with those of tools; at most "
-                                                   "{}",
-                                                   options.models.size(), kMaxModels)));
+               : std::optional(
+                     failure(fmt::format("--tool: {} models, including those of tools; at most {}",
+                                         options.models.size(), kMaxModels)));
 }
 
 double reach_m(const ToolChoice& tool, const ModelHeader* mesh)
@@ -263,7 +265,7 @@ double reach_m(const ToolChoice& tool, const ModelHeader* mesh)
     return core_m + tool.radius_m;
 }
 
-double hand_radius_m(const ToolChoice& tool, const ModelHeader* mesh, double diagonal_m)
+double operator_radius_m(const ToolChoice& tool, const ModelHeader* mesh, double diagonal_m)
 {
     const bool is_round = std::holds_alternative<PointCore>(tool.core);
     const double reach = is_round ? tool.radius_m : 0.5 * reach_m(tool, mesh);

@@ -31,29 +31,30 @@ struct ToolChoice
 };
 
 /// Parses "point", "sphere:R", "capsule:R,L", "box:X,Y,Z[,R]", "hull:FILE[,R]" or
-/// "mesh:NAME[@HASH][,R]", in metres. R is the radius. L is the length without caps of the axis,
-/// the tool's z. X, Y and Z are whole edges without R.
+/// "mesh:NAME[@HASH][,R]", in metres. R is the radius. L is the length of the axis along the tool's
+/// z, without the caps. X, Y and Z are full edge lengths, without R.
 [[nodiscard]] Result<ToolChoice, Refusal> parse_tool(std::string_view text);
 
-/// Parses KG[,X,Y,Z]: 0 to 5 kg and a centre in metres, within 1 m of the origin; down is -z.
+/// Parses KG[,X,Y,Z], the payload: 0 to 5 kg, and its centre of mass in the tool's frame, in
+/// metres, within 1 m of the origin. Gravity points along -z.
 [[nodiscard]] Result<ToolLoad, Refusal> parse_tool_mass(std::string_view text);
 
-/// Sphere for tools without --tool. Its radius is 1 % of the diagonal, clamped to the range of
+/// Sphere for tools without --tool: its radius is 1 % of `diagonal_m`, clamped to the range of
 /// parse_tool().
 [[nodiscard]] ToolChoice default_tool(double diagonal_m);
 
 /// Reads the files of hulls, and adds the models of mesh tools to `options`. Call it once the
-/// objects' models are known. Returns the refusal of a tool that can't be made.
+/// objects' models are known. Returns the refusal of the first tool that can't be made.
 [[nodiscard]] std::optional<Refusal> take_tool_files(Options& options);
 
 /// Radius in metres of a sphere round the tool's origin that holds the tool. `mesh` is the header
 /// of a mesh tool's model, null otherwise.
 [[nodiscard]] double reach_m(const ToolChoice& tool, const ModelHeader* mesh);
 
-/// Distance from a surface at which a simulated operator holds the tool's origin to touch. For a
-/// sphere it is the radius, for other shapes half of reach_m(), in any orientation. For a point it
-/// is the radius of default_tool(). It never exceeds the diagonal of the touched model.
-[[nodiscard]] double hand_radius_m(const ToolChoice& tool, const ModelHeader* mesh,
-                                   double diagonal_m);
+/// Distance of the tool's origin from a surface that a simulated operator touches: the radius of a
+/// sphere, half of reach_m() for other shapes in any orientation, and for a point the radius of
+/// default_tool(). At most `diagonal_m`, the diagonal of the touched model.
+[[nodiscard]] double operator_radius_m(const ToolChoice& tool, const ModelHeader* mesh,
+                                       double diagonal_m);
 
 } // namespace tactus::hrtc

@@ -29,16 +29,19 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Margin of a proposed tolerance. Rounded to three digits, the proposal is still accepted.
+/// Share of the largest accepted tolerance that a refusal proposes, so that it is accepted when
+/// rounded to three digits.
 constexpr double kWithinRadius = 0.99;
 
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
-/// Speed limit of the proxy without --proxy-speed, in diagonals per second.
+/// Speed limit of the proxy without --proxy-speed, in diagonals of the first object per second.
 constexpr double kSpeedMax_diag = 1.0;
-/// Speed limit of a simulated device, in diagonals per second. The operator moves at half of it.
-constexpr double kHandSpeed_diag = 4.0;
-/// Least diagonal of an object that a simulated operator prefers, in radii of its tool.
-constexpr double kHandRoom = 10.0;
+/// Speed limit of a simulated device, in diagonals of its object per second. An operator that
+/// follows an object catches up at half of it.
+constexpr double kOperatorSpeed_diag = 4.0;
+/// Least diagonal of an object that is chosen for a simulated operator, in radii of its tool. If no
+/// object is so large, the first one is chosen.
+constexpr double kOperatorRoom = 10.0;
 
 /// Rounds up to two decimals, so that the printed value is never less than `value`.
 double up_to_cents(double value)
@@ -162,7 +165,7 @@ void Controller::make_tools(const Options& options)
                      options.proxy_speed_m_per_s.value_or(kSpeedMax_diag * diagonal_world_m())};
         tool.spec.core = shape.core;
         const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
-        tool.hand_radius_m = hand_radius_m(
+        tool.operator_radius_m = operator_radius_m(
             shape, mesh != nullptr ? &headers_[mesh->model.value] : nullptr, diagonal_world_m());
         if (asked.fixture)
         {
@@ -172,14 +175,14 @@ void Controller::make_tools(const Options& options)
         }
         tool.spec.torque_max_nm = limits.rotation.torque_max_nm;
         tool.spec.angular_stiffness_nm_per_rad = options.angular_stiffness_nm_per_rad;
-        tool.spec.shading_m = Tool::is_held_as_body(tool.spec) ? 0.0 : options.shading_m;
+        tool.spec.shading_m = Tool::is_held_as_rigid(tool.spec) ? 0.0 : options.shading_m;
         tool_specs_.push_back(tool.spec);
     }
 }
 
-/// Refuses a tolerance at which a surface may be off by more than the tool's radius. The tool would
-/// feel no force there. For the usual tolerance, and for tools without a radius, the bound of
-/// SurfaceTolerance holds.
+/// Refuses a force tolerance at which a surface may be off by more than a tool's radius: the tool
+/// would feel no force there. The usual tolerance is always accepted. Tools without a radius, and
+/// mesh tools, are not checked.
 std::optional<Refusal> Controller::check_tolerance(const Options& options) const
 {
     const double asked_n = options.force_tolerance_n;
@@ -196,11 +199,11 @@ std::optional<Refusal> Controller::check_tolerance(const Options& options) const
         if (!is_mesh(tool.spec) && tool.spec.radius_m > 0.0 &&
             asked_n > std::max(most_n, kForceToleranceUsual_n))
         {
-            return Refusal{fmt::format(
-                "--force-tolerance: {:.3g} N is {:.3g} mm of a wall of {:.4g} N/m, more than the "
-                "radius of the tool {}; 0 to {:.3g} N",
-                asked_n, 1e3 * asked_n / softest_n_per_m, softest_n_per_m, tool.shape,
-                std::max(kWithinRadius * most_n, kForceToleranceUsual_n))};
+            return Refusal{
+                fmt::format("--force-tolerance: {:.3g} N is {:.3g} mm at a stiffness of {:.4g} "
+                            "N/m, more than the radius of the tool {}; use 0 to {:.3g} N",
+                            asked_n, 1e3 * asked_n / softest_n_per_m, softest_n_per_m, tool.shape,
+                            std::max(kWithinRadius * most_n, kForceToleranceUsual_n))};
         }
     }
     return std::nullopt;
@@ -229,11 +232,11 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     if (!fits && !try_plan_as_streamed_models(options, most, cache))
     {
         const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
-        return Refusal{fmt::format("--pool-mib: {} MiB is too small for {}; {:.2f} MiB would "
-                                   "do for a start{}",
-                                   options.pool_mib, counted(models_.size(), "model"),
-                                   up_to_cents(static_cast<double>(least) / kBytesPerMib),
-                                   options.cache_mib > 0.0 ? ", or less --cache-mib" : "")};
+        return Refusal{
+            fmt::format("--pool-mib: {} MiB is too small for {}; at least {:.2f} MiB is needed{}",
+                        options.pool_mib, counted(models_.size(), "model"),
+                        up_to_cents(static_cast<double>(least) / kBytesPerMib),
+                        options.cache_mib > 0.0 ? ", or a smaller --cache-mib" : "")};
     }
     if (fits)
     {
@@ -259,7 +262,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     return std::nullopt;
 }
 
-/// Fetches the base meshes that are missing.
+/// Fetches the missing base meshes of these models.
 std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
                                                const Options& options) const
 {
@@ -267,7 +270,8 @@ std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
     return bring_bases(models, wait, goes_on_);
 }
 
-/// Plans a scene of more models than fit into the pools at once.
+/// Plans the pools of a scene for streamed models, which need not all be resident at once. False,
+/// without effect, if there is no scene, a tool is a mesh or the pools are too small.
 bool Controller::try_plan_as_streamed_models(const Options& options, std::size_t bytes,
                                              std::size_t cache)
 {
@@ -329,7 +333,7 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
     return check_damping(options);
 }
 
-/// Refuses to hold a gripper without motors.
+/// Refuses a gripper fixture on a device without gripper force.
 std::optional<Refusal> Controller::check_grippers(const Options& options) const
 {
     for (std::size_t i = 0; i < options.tools.size(); ++i)
@@ -338,7 +342,7 @@ std::optional<Refusal> Controller::check_grippers(const Options& options) const
         const std::optional<FixtureChoice>& fixture = options.tools[i].fixture;
         if (fixture && fixture->kind == FixtureKind::gripper && !(device.gripper_force_max_n > 0.0))
         {
-            return Refusal{fmt::format("{}: '{}': the device {} makes no force at a gripper",
+            return Refusal{fmt::format("{}: '{}': the device {} has no gripper force",
                                        options.of_tool("--fixture", i), fixture->words,
                                        device.name)};
         }
@@ -346,7 +350,8 @@ std::optional<Refusal> Controller::check_grippers(const Options& options) const
     return std::nullopt;
 }
 
-/// Refuses a payload above half of the device's force or torque, so that walls can still be felt.
+/// Sets the tool's payload. Refuses one above half of the device's force or torque, so that walls
+/// can still be felt.
 std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t tool)
 {
     ToolLoad& load = tools_[tool].load;
@@ -361,24 +366,24 @@ std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t
     const double torque_max_nm = device.limits.rotation.torque_max_nm;
     if (load.weight_n() > 0.5 * device.limits.force_max_n)
     {
-        return Refusal{fmt::format("{}: {:.4g} kg weigh {:.3g} N; the device {} carries half of "
-                                   "its {:.3g} N, {:.3g} kg, at most",
+        return Refusal{fmt::format("{}: {:.4g} kg weigh {:.3g} N; the device {} carries at most "
+                                   "half of its {:.3g} N, which is {:.3g} kg",
                                    option, load.mass_kg, load.weight_n(), device.name,
                                    device.limits.force_max_n,
                                    0.5 * device.limits.force_max_n / kGravity_m_per_s2)};
     }
     if (torque_max_nm > 0.0 && load.torque_max_nm() > 0.5 * torque_max_nm)
     {
-        return Refusal{fmt::format("{}: {:.4g} kg at {:.3g} m turn with {:.3g} N m; the device {} "
-                                   "carries half of its {:.3g} N m at most",
+        return Refusal{fmt::format("{}: {:.4g} kg at {:.3g} m cause a torque of {:.3g} N m; the "
+                                   "device {} carries at most half of its {:.3g} N m",
                                    option, load.mass_kg, load.centre_m.norm(), load.torque_max_nm(),
                                    device.name, torque_max_nm)};
     }
     return std::nullopt;
 }
 
-/// Refuses an object whose damping leaves a tool's device no stable wall. Materials of a server are
-/// limited during the run instead.
+/// Refuses an object whose damping leaves a tool's device no perceptible stiffness. Materials of a
+/// server are limited during the run instead.
 std::optional<Refusal> Controller::check_damping(const Options& options) const
 {
     const bool is_served = options.transport == TransportKind::dds && !options.scene.empty();
@@ -396,7 +401,7 @@ std::optional<Refusal> Controller::check_damping(const Options& options) const
 
 std::optional<Refusal> Controller::simulate_device(const Options& options, std::size_t tool)
 {
-    const auto chosen = object_of_hand(options, tool);
+    const auto chosen = object_of_operator(options, tool);
     if (!chosen)
     {
         return chosen.error();
@@ -414,13 +419,14 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
                                    models_[objects_[object].model.value].name)};
     }
     scene.diagonal_m = diagonal_of(object);
-    scene.tool_radius_m = tools_[tool].hand_radius_m;
+    scene.tool_radius_m = tools_[tool].operator_radius_m;
     scene.period = options.period();
     scene.frames_total = options.frames();
-    scene.hands_before = static_cast<std::size_t>(std::ranges::count(objects_of_hands_, object));
-    objects_of_hands_.push_back(object);
+    scene.operators_before =
+        static_cast<std::size_t>(std::ranges::count(operator_objects_, object));
+    operator_objects_.push_back(object);
     const ToolOptions& asked = options.tools[tool];
-    auto motion = make_motion(asked.hand.motion, scene, tool + 1);
+    auto motion = make_motion(asked.simulated.motion, scene, tool + 1);
     if (!motion)
     {
         return Refusal{options.of_tool("--tool", tool) + ": " + motion.error().text};
@@ -432,16 +438,16 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     device_options.workspace_centre_world_m = motion.value().centre_world_m;
     device_options.workspace_radius_m = motion.value().reach_m;
     device_options.speed_max_m_per_s =
-        std::max(device_options.speed_max_m_per_s, kHandSpeed_diag * scene.diagonal_m);
+        std::max(device_options.speed_max_m_per_s, kOperatorSpeed_diag * scene.diagonal_m);
     if (is_followed(options, object))
     {
         device_options.workspace_radius_m = kPoseReachMax_m;
-        motion.value().hand = std::make_unique<FollowingOperator>(
-            std::move(motion.value().hand), frame_->objects(), static_cast<std::uint32_t>(object),
+        motion.value().motion = std::make_unique<FollowingOperator>(
+            std::move(motion.value().motion), frame_->objects(), static_cast<std::uint32_t>(object),
             model_pose(poses_[object], headers_[objects_[object].model.value].origin_m()),
-            0.5 * kHandSpeed_diag * scene.diagonal_m * to_seconds(options.period()));
+            0.5 * kOperatorSpeed_diag * scene.diagonal_m * to_seconds(options.period()));
     }
-    auto device = SimulatedDevice::create(device_options, std::move(motion.value().hand));
+    auto device = SimulatedDevice::create(device_options, std::move(motion.value().motion));
     if (!device)
     {
         return Refusal{options.of_tool("--device", tool) + ": " + device.error().text};
@@ -455,7 +461,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     return std::nullopt;
 }
 
-/// Sets the force pipeline between the tool's force and its device.
+/// Sets the tool's part of the force pipeline from its device's properties and the options.
 void Controller::limit_force(const Options& options, ToolSetup& tool) const
 {
     const DeviceInfo& info = tool.device->info();
@@ -469,12 +475,12 @@ void Controller::limit_force(const Options& options, ToolSetup& tool) const
     tool.clutch_button = options.clutch_button;
 }
 
-/// Object of a simulated operator. Without a name each operator gets another object, if enough
-/// objects are much larger than its tool.
-Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
-                                                        std::size_t tool) const
+/// Number of the object of a simulated operator. Without a name each operator gets another object,
+/// if enough objects are much larger than its tool.
+Result<std::size_t, Refusal> Controller::object_of_operator(const Options& options,
+                                                            std::size_t tool) const
 {
-    if (const std::string& name = options.tools[tool].hand.object; !name.empty())
+    if (const std::string& name = options.tools[tool].simulated.object; !name.empty())
     {
         const auto called = std::ranges::find(options.objects, name, &PlacedObject::name);
         if (called != options.objects.end())
@@ -499,7 +505,7 @@ Result<std::size_t, Refusal> Controller::object_of_hand(const Options& options,
     for (std::size_t i = 0; i < objects_.size(); ++i)
     {
         const std::size_t object = (tool + i) % objects_.size();
-        if (diagonal_of(object) >= kHandRoom * tools_[tool].hand_radius_m)
+        if (diagonal_of(object) >= kOperatorRoom * tools_[tool].operator_radius_m)
         {
             return object;
         }
@@ -520,8 +526,8 @@ double Controller::diagonal_of(std::size_t object) const noexcept
     return headers_[objects_[object].model.value].diagonal_m() * poses_[object].scale;
 }
 
-/// Base vertices of the object's model in the world. They are original vertices, so they lie on its
-/// surface. Empty if the base mesh is damaged.
+/// Base vertices of the object's model in the world. They are vertices of the source mesh, so they
+/// lie on its surface. Empty if the base mesh is damaged.
 std::vector<Vec3> Controller::anchors_world_m(std::size_t object) const
 {
     std::vector<Vec3> anchors;

@@ -25,17 +25,17 @@
 namespace tactus::hrtc
 {
 
-/// All parts between the transport and the devices: pools, frame, chunk loader, object poses and
-/// devices. Assembled before any thread starts.
+/// All parts of a run between the transport and the devices: pools, frame, chunk loader, object
+/// poses and devices. create() assembles them before any thread starts.
 class Controller
 {
 public:
-    /// Opens the devices, and waits for missing ones while `goes_on` is true. Lays out all pools
-    /// inside options.pool_mib, fetches missing base meshes, and starts the frame. Creates a
-    /// simulated device for each tool without another one. For streamed models, only the base
-    /// meshes for simulated operators are fetched. Refused if a device is missing or can't run at
-    /// that rate, or if a base mesh takes longer than options.wait_s. Also refused if the pools are
-    /// too small; the refusal gives the size that suffices for a start.
+    /// Opens the devices, and waits for missing ones while `goes_on` returns true. Lays out all
+    /// pools inside options.pool_mib, fetches missing base meshes, and starts the frame. A tool
+    /// without an opened device gets a simulated one. For streamed models, only the base meshes for
+    /// simulated operators are fetched. Refused if a device is missing or can't run at
+    /// options.rate_hz, or if a base mesh takes longer than options.wait_s. Also refused if the
+    /// pools are too small; the refusal gives the size that suffices for a start.
     [[nodiscard]] static Result<std::unique_ptr<Controller>, Refusal>
     create(const Options& options, std::vector<ServedModel> models, const Log& log,
            const std::function<bool()>& goes_on);
@@ -48,20 +48,19 @@ public:
     [[nodiscard]] const std::vector<ToolSetup>& tools() const noexcept { return tools_; }
     /// Objects by their numbers, with their places at the start.
     [[nodiscard]] const std::vector<ObjectSpec>& objects() const noexcept { return objects_; }
-    /// Number of the first object that shows each model, by model. Without a followed scene, the
-    /// model's host moves that object. If no object shows a model at the start, its entry is
-    /// objects().size().
+    /// Number of the first object that shows each model, one entry a model; objects().size() if
+    /// none does at the start. Without a followed scene, the model's server moves that object.
     [[nodiscard]] std::vector<std::uint32_t> first_objects() const;
-    /// Parts of the scene; the views in it point into the controller.
+    /// Parts of the scene, with views into the controller.
     [[nodiscard]] SceneParts scene_parts() const;
     [[nodiscard]] const std::vector<ObjectPose>& poses() const noexcept { return poses_; }
     [[nodiscard]] const std::vector<ServedModel>& models() const noexcept { return models_; }
     [[nodiscard]] const Budgets& budgets() const noexcept { return budgets_; }
-    /// Setup from which the frame was made.
+    /// Setup of the frame at its start.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
-    /// Bytes of the frame, its pools and tables, and the transport's side of them.
+    /// Bytes of the frame, its pools and tables, and the chunk loader's memory.
     [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_->used() + sizeof(Frame); }
-    /// Diagonal of the first object in the world, the unit of reported widths.
+    /// Diagonal of the first object, in the world.
     [[nodiscard]] double diagonal_world_m() const noexcept;
 
 private:
@@ -83,9 +82,9 @@ private:
     [[nodiscard]] std::optional<Refusal> check_grippers(const Options& options) const;
     [[nodiscard]] std::optional<Refusal> check_damping(const Options& options) const;
     [[nodiscard]] std::optional<Refusal> hang_load(const Options& options, std::size_t tool);
-    [[nodiscard]] Result<std::size_t, Refusal> object_of_hand(const Options& options,
-                                                              std::size_t tool) const;
-    /// True if the host may move the object.
+    [[nodiscard]] Result<std::size_t, Refusal> object_of_operator(const Options& options,
+                                                                  std::size_t tool) const;
+    /// True if a server may move the object.
     [[nodiscard]] bool is_followed(const Options& options, std::size_t object) const;
     [[nodiscard]] double diagonal_of(std::size_t object) const noexcept;
     [[nodiscard]] std::vector<Vec3> anchors_world_m(std::size_t object) const;
@@ -106,7 +105,8 @@ private:
     PosixClock clock_; ///< Clock of the devices that aren't simulated.
     std::vector<std::unique_ptr<VirtualFixture>> fixtures_; ///< Fixtures, which the tools borrow.
     std::vector<ToolSetup> tools_;
-    std::vector<std::size_t> objects_of_hands_; ///< Objects of the simulated operators so far.
+    /// Object numbers of the simulated operators made so far.
+    std::vector<std::size_t> operator_objects_;
 };
 
 } // namespace tactus::hrtc

@@ -37,7 +37,7 @@ Result<KeptInputs, Refusal> write_last_inputs(const LastInputs& inputs,
 {
     RecordingWriter writer(to_recorded(setup));
     inputs.write_to(writer);
-    if (failed) // The pieces that the frame took from the queues are not kept.
+    if (failed) // The pieces that this frame took from the queues are not kept.
     {
         FrameEncoder encoder;
         writer.add_frame(encoder.encode_given({failed->input, {}, failed->devices}));

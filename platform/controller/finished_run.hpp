@@ -36,17 +36,17 @@ struct FinishedRun
     Duration period;
     std::time_t started{0}; ///< Calendar time of the start.
     SafetyRecord safety;
-    bool host_was_lost{false}; ///< True if a model's host was lost during the run.
-    /// Model name of the object inside which each tool began; empty: none.
+    bool server_was_lost{false}; ///< True if a model's server was lost during the run.
+    /// Name of the model inside which each tool began, one entry a tool; empty: outside.
     std::vector<std::string> begins_inside{};
-    bool has_other_device{false};     ///< True if the run ended because another device took the
-                                      ///< place of a tool's device.
-    std::vector<PoseUse> pose_uses{}; ///< Use of poses, one entry an object; none without DDS.
-    std::vector<dds::PoseCounts> pose_counts{};    ///< Counts of poses, one entry a model; none if
-                                                   ///< poses aren't followed.
-    SceneNewsCounts scene_news{};                  ///< Counts of the news of a host's scene.
+    /// True if another device took the place of a tool's device, which ended the run.
+    bool has_other_device{false};
+    std::vector<PoseUse> pose_uses{}; ///< Use of poses, one entry an object; empty without DDS.
+    /// Counts of poses, one entry a model; empty if poses aren't followed.
+    std::vector<dds::PoseCounts> pose_counts{};
+    SceneNewsCounts scene_news{};                  ///< Counts of the changes of a server's scene.
     std::vector<dds::PeerRefusals> refused{};      ///< Refused messages of other participants.
-    std::vector<dds::ServerEvent> server_events{}; ///< Events of the servers; none from files.
+    std::vector<dds::ServerEvent> server_events{}; ///< Events of the servers; empty for files.
     std::uint64_t telemetry_sent{0};
     std::uint64_t states_sent{0};
     std::optional<RecordingResult> recording{};

@@ -18,10 +18,10 @@ bool are_equal(const Similarity& a, const Similarity& b) noexcept
 
 } // namespace
 
-FollowingOperator::FollowingOperator(std::unique_ptr<OperatorMotion> hand,
+FollowingOperator::FollowingOperator(std::unique_ptr<OperatorMotion> motion,
                                      const ObjectTable& objects, std::uint32_t object,
                                      const Similarity& start, double step_max_m)
-    : hand_(std::move(hand))
+    : motion_(std::move(motion))
     , objects_(objects)
     , object_(object)
     , start_(start)
@@ -42,7 +42,8 @@ void FollowingOperator::look() noexcept
     way_.rotation = object.pose.rotation * start_.rotation.transpose();
     way_.translation_m =
         object.pose.translation_m - way_.scale * (way_.rotation * start_.translation_m);
-    // The surroundings move with the object, unless the step is too large.
+    // The operator moves with the object. A step above step_max_m_ goes into the offset late_m_
+    // instead, which then shrinks.
     const Vec3 here_m = start_.translation_m;
     const Vec3 step_m = way_.local_to_world(here_m) - before.local_to_world(here_m);
     late_m_ -= step_m.norm() > step_max_m_ ? step_m : Vec3(Vec3::Zero());
@@ -53,7 +54,7 @@ Vec3 FollowingOperator::next_world_m(const OperatorSense& sense) noexcept
     look();
     if (!has_moved_)
     {
-        return hand_->next_world_m(sense);
+        return motion_->next_world_m(sense);
     }
     const double late_m = late_m_.norm();
     late_m_ *= late_m > step_max_m_ ? (late_m - step_max_m_) / late_m : 0.0;
@@ -62,12 +63,12 @@ Vec3 FollowingOperator::next_world_m(const OperatorSense& sense) noexcept
     sensed.force_world_n = way_.rotation.transpose() * sense.force_world_n;
     sensed.torque_world_nm = way_.rotation.transpose() * sense.torque_world_nm;
     sensed.device_rotation = way_.rotation.transpose() * sense.device_rotation;
-    return way_.local_to_world(hand_->next_world_m(sensed)) + late_m_;
+    return way_.local_to_world(motion_->next_world_m(sensed)) + late_m_;
 }
 
 OperatorGrip FollowingOperator::grip() const noexcept
 {
-    OperatorGrip grip = hand_->grip();
+    OperatorGrip grip = motion_->grip();
     if (has_moved_)
     {
         grip.rotation = way_.rotation * grip.rotation;

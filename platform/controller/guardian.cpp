@@ -29,11 +29,11 @@ namespace
 
 constexpr char kEnds = 'e';    ///< Message that the devices are closed and need no brake.
 constexpr char kCrashes = 'c'; ///< Message that the process is about to die.
-constexpr char kReady = 'r';   ///< Answer that the guardian is ready. Others are kNoGuards or a
-                               ///< refusal.
+/// Answer that the guardian is ready. Other answers are kNoGuards and a refusal's text.
+constexpr char kReady = 'r';
 constexpr char kNoGuards = 'n';
 
-/// Pipe for the report of a crash; -1: none. A signal handler reads it.
+/// Writing end of the pipe, for the report of a crash; -1: none. Loaded by a signal handler.
 std::atomic<int> crash_pipe{-1};
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -105,7 +105,7 @@ std::optional<char> read_one(int descriptor) noexcept
 
 constexpr std::array kCrashSignals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-/// Actions of the signals before watch_for_crashes().
+/// Actions of kCrashSignals before watch_for_crashes().
 std::array<struct sigaction, kCrashSignals.size()>& former_actions()
 {
     static std::array<struct sigaction, kCrashSignals.size()> actions{};
@@ -120,7 +120,8 @@ void restore_crash_signals() noexcept
     }
 }
 
-/// Signal handler. The signal is raised again when it returns, and takes its former action then.
+/// Signal handler: reports the crash and raises the signal again. The signal takes its former
+/// action when the handler returns.
 void tell_of_crash(int signal)
 {
     const int error = errno;
@@ -141,10 +142,10 @@ void watch_for_crashes(int pipe) noexcept
     }
 }
 
-// --- The guardian's process.
+// --- Code that runs in the guardian's process.
 
-/// Detaches the guardian from the terminal and ignores its signals. Signals to all processes of a
-/// service or of hrtc's name are ignored as well; they are meant for the other process.
+/// Detaches the guardian from the terminal and ignores the signals that end programs. Signals to
+/// all processes of a service, or to all named hrtc, are meant for hrtc's own process.
 void leave_company()
 {
     ::setsid();
@@ -201,12 +202,12 @@ void watch_over(const Guardian::Guards& guards, int life)
         const bool are_braked = brake_all(guards);
         log_message(LogLevel::error, "hrtc",
                     are_braked ? "guardian: hrtc has died; its devices are braked"
-                               : "guardian: hrtc has died, and a device that it had doesn't obey");
+                               : "guardian: hrtc has died, and a device did not brake");
     }
 }
 
-/// Body of the guardian. No exception may leave it, because its stack is a copy of the other
-/// process's.
+/// Body of the guardian's process: reports on `answer`, then waits on `life`. No exception may
+/// leave it, because its stack is a copy of hrtc's.
 void guard(const Guardian::MakeGuards& make, int priority, bool allow_no_rt, int life,
            int answer) noexcept
 {
@@ -235,7 +236,7 @@ void guard(const Guardian::MakeGuards& make, int priority, bool allow_no_rt, int
 
 Refusal refuse(const std::string& why)
 {
-    return {"a guardian can't start: " + why};
+    return {"the guardian can't start: " + why};
 }
 
 } // namespace
@@ -273,7 +274,7 @@ Result<std::unique_ptr<Guardian>, Refusal> Guardian::start(const MakeGuards& mak
     {
         return std::unique_ptr<Guardian>();
     }
-    return refuse(words.empty() ? "it ended before it was ready" : words);
+    return refuse(words.empty() ? "its process ended before it was ready" : words);
 }
 
 Guardian::~Guardian()

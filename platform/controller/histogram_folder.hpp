@@ -10,11 +10,11 @@
 namespace tactus::hrtc
 {
 
-/// Path of the file for the times `name` of a run in its folder of histograms.
+/// Path of the histogram file for the times called `name`: FOLDER/NAME.hgrm.
 [[nodiscard]] std::string histogram_path(const std::string& folder, const char* name);
 
-/// Reason why the folder can't take the files, for a check before a long run. Leaves no file
-/// behind.
+/// Reason why histograms can't be written to the folder; none if they can. For a check before a
+/// long run; leaves no file behind.
 [[nodiscard]] std::optional<Refusal> probe_histograms(const std::string& folder);
 
 } // namespace tactus::hrtc

@@ -72,7 +72,8 @@ void Recorder::step()
     store();
 }
 
-/// A piece is copied before it enters the queues, so the pieces of a finished frame are available.
+/// Gives the waiting frames to the writer, each after its pieces. A piece is copied to `pieces_`
+/// before it enters the queues, so the pieces of a finished frame are there.
 void Recorder::take_frames()
 {
     std::vector<std::byte> coded;
@@ -102,7 +103,7 @@ void Recorder::take_pieces()
     }
 }
 
-/// After an error the remaining bytes are dropped, so they take no memory.
+/// Writes the writer's bytes to the file. After an error they are dropped, so they take no memory.
 void Recorder::store()
 {
     const std::vector<std::byte> bytes = writer_.take_bytes();

@@ -36,9 +36,12 @@ class Recorder
 public:
     enum class Worker : std::uint8_t
     {
-        own_thread, ///< Own thread. Start it before the haptic thread, whose policy and processor
-                    ///< it would inherit.
-        caller,     ///< Caller of step(), at least twice in the time that the tap can hold.
+        /// A thread of the recorder. Make the recorder before the haptic thread, whose policy and
+        /// processor the thread would inherit.
+        own_thread,
+        /// The thread that calls step(). It must do so at least twice in the time that FrameTap can
+        /// hold.
+        caller,
     };
     /// The chunk loader must outlive the recorder. It must not run while the recorder is made or
     /// destroyed.
@@ -53,14 +56,14 @@ public:
     /// Keeps the name of an added object for the file. Transport thread.
     void name_object(std::uint32_t number, std::uint32_t generation, const std::string& name);
 
-    /// Writes the waiting frames and pieces. The caller's thread, if that is the worker.
+    /// Writes the waiting frames and pieces. With Worker::caller, for that thread only.
     void step();
 
-    /// Adds the failed frame. Call it when no frame runs any more.
+    /// Adds the failed frame at the end. Call it when no frame runs any more.
     void add_failed(const GivenFrame& frame);
 
-    /// Writes the remaining frames, ends the recording and commits the file. Once, when no frame
-    /// runs any more.
+    /// Writes the remaining frames, ends the recording and commits the file. Call it once, when no
+    /// frame runs any more.
     [[nodiscard]] Result<RecordingResult, Refusal> finish();
 
 private:
@@ -93,8 +96,7 @@ private:
     FrameTap tap_;
     RecordingWriter writer_;
     std::mutex mutex_;
-    std::vector<Piece> pieces_; ///< Pieces that the writer hasn't got yet. The mutex guards them
-                                ///< and the names.
+    std::vector<Piece> pieces_; ///< Pieces for `writer_`. `mutex_` guards them and `names_`.
     std::map<RecordedName, std::string> names_;
     Result<Done, Refusal> stored_{Done{}};
     std::optional<WriterThread> thread_; ///< Last member, because it uses the others.

@@ -16,7 +16,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Mean and maximum of the frames since the copy before.
+/// Mean over the frames since the copy `before`, and maximum over all frames.
 FrontTimes times_since(const RefinementStateCopy::Times& now,
                        const RefinementStateCopy::Times& before)
 {
@@ -29,7 +29,7 @@ FrontTimes times_since(const RefinementStateCopy::Times& now,
 
 static_assert(SlotQueues::kOpenRequests <= kMaxStateRequests);
 
-/// Requested chunks that are still missing, by model.
+/// Chunks with open requests, sorted, one list a model.
 std::vector<std::vector<ChunkId>> requested_of(const Controller& controller)
 {
     std::vector<std::vector<ChunkId>> requested(controller.models().size());
@@ -41,8 +41,8 @@ std::vector<std::vector<ChunkId>> requested_of(const Controller& controller)
     return requested;
 }
 
-/// Adds the models on which the state has data. Returns their indices in RefinementState::models,
-/// by model.
+/// Adds the models of which the copy has pages, objects or regions, or of which chunks are
+/// requested. Returns the index in RefinementState::models of each; only valid for these models.
 std::vector<std::uint32_t> add_models(const RefinementStateCopy& copy, const Controller& controller,
                                       RefinementState& front)
 {
@@ -108,7 +108,7 @@ RefinementState refinement_state_of(const RefinementStateCopy& copy,
     for (const RefinementStateCopy::Object& object : copy.objects)
     {
         const auto shown = keeper != nullptr ? keeper->shown_as(object.number) : std::nullopt;
-        front.objects.push_back({shown ? shown->host_epoch : 0,
+        front.objects.push_back({shown ? shown->server_epoch : 0,
                                  shown ? shown->number : object.number, object.number,
                                  places[object.model], pose_of(object.pose)});
     }

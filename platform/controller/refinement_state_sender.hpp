@@ -17,10 +17,10 @@
 namespace tactus::hrtc
 {
 
-/// Completes a copy by data from this side of the tap, such as the models and tools of its numbers.
-/// `before` are the times of the copy before, for the means. Objects that `keeper` knows get their
-/// hosts' names; it may be null. The chunk loader supplies the requested chunks. Transport thread;
-/// allocates.
+/// Refinement state for viewers: the haptic thread's copy, completed by data of the transport
+/// thread such as model hashes, tool shapes and requested chunks. Means cover the frames since
+/// `before`, the times of the last copy. Objects that `keeper` follows get their server's epoch and
+/// number; `keeper` may be null. Transport thread; allocates.
 [[nodiscard]] RefinementState refinement_state_of(const RefinementStateCopy& copy,
                                                   const RefinementStateCopy::AllTimes& before,
                                                   const Controller& controller,
@@ -37,17 +37,19 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<RefinementStateSender>, Refusal>
     create(const dds::DdsClient& client, const Controller& controller);
 
-    /// Connects the haptic thread's tap, before the first step. The tap lives as long as the run.
+    /// Connects the haptic thread's tap. Call it before the first step(). The tap must outlive the
+    /// last step().
     void connect(RefinementStateTap& tap) noexcept { tap_ = &tap; }
 
-    /// Sends the newest refinement state if one is due and available. While no viewer watches, the
-    /// copy isn't given back, so the haptic thread makes no other.
+    /// Sends a refinement state if kPeriod has passed since the last one, a viewer watches and a
+    /// copy is there. While no viewer watches, the copy isn't given back, so the haptic thread
+    /// makes no other.
     void step(MonotonicTime now, const SceneKeeper* keeper);
 
-    /// Marks that the tool began inside a closed object. Any thread.
+    /// Sets the flag of the tool that it began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept
     {
-        begin_inside_.fetch_or(1U << tool, std::memory_order_relaxed); // Pairs with none.
+        begin_inside_.fetch_or(1U << tool, std::memory_order_relaxed); // Orders no other data.
     }
 
     [[nodiscard]] std::uint64_t sent() const noexcept { return writer_->sent(); }
@@ -59,10 +61,12 @@ private:
     std::unique_ptr<dds::RefinementStateWriter> writer_;
     RefinementStateTap* tap_{nullptr};
     static_assert(kMaxTools <= 32);
-    std::atomic<std::uint32_t> begin_inside_{0}; ///< One bit a tool.
+    /// One bit a tool: set if the tool began inside a closed object.
+    std::atomic<std::uint32_t> begin_inside_{0};
     RefinementStateCopy::AllTimes last_{};
     MonotonicTime last_sent_{};
-    bool is_old_{true}; ///< True if the present copy was made before a viewer watched.
+    /// True if the present copy may be from before a viewer watched; such a copy is not sent.
+    bool is_old_{true};
 };
 
 } // namespace tactus::hrtc

@@ -48,8 +48,8 @@ Result<std::vector<ServedModel>, Refusal> find_in_files(const Options& options)
     return models;
 }
 
-/// Finds the models of hosts. The client must live as long as the models' links. The controller
-/// fetches the base meshes, because it knows which ones it needs.
+/// Finds the headers of published models; the controller fetches the base meshes that it needs. The
+/// client must outlive the models' links.
 Result<std::vector<ServedModel>, Refusal>
 find_published(const Options& options, dds::DdsClient& client, const std::function<bool()>& goes_on)
 {
@@ -120,13 +120,14 @@ std::optional<std::string> start_trace(const Options& options, std::optional<Tra
     return std::nullopt;
 }
 
-/// Refusal if the machine lacks a required property; none if all required ones are available.
+/// Refusal if the processor of --cpu can't be used, or if real-time rights are missing without
+/// --allow-no-rt; else none.
 std::optional<Refusal> check_machine(const Options& options)
 {
     const auto refused = probe_realtime(options.thread);
     if (!refused)
     {
-        // Only the system can judge the option --cpu.
+        // Only the system can judge the value of --cpu, the one option that is checked here.
         const bool is_usage = refused.error().is_usage;
         return Refusal{(is_usage ? "--cpu: " : "") + refused.error().text, is_usage};
     }
@@ -136,7 +137,7 @@ std::optional<Refusal> check_machine(const Options& options)
         {
             log_error(line);
         }
-        return failure("not run; --allow-no-rt runs it without");
+        return failure("not started; to run without these rights, use --allow-no-rt");
     }
     return std::nullopt;
 }
@@ -168,7 +169,7 @@ std::optional<Refusal> check_outputs(const Options& options)
     return std::nullopt;
 }
 
-/// Guards of the devices that would hold their force.
+/// Guards of the devices that would hold their force after hrtc's death.
 Result<Guardian::Guards, Refusal> make_guards(const Options& options)
 {
     Guardian::Guards guards;
@@ -198,14 +199,14 @@ void tell_of_unguarded(const Options& options)
         const DeviceChoice& choice = options.tools[tool].device;
         if (choice.kind == DeviceKind::plugin && !has_guard(choice.library))
         {
-            log_line(fmt::format("tool {}: {} has no guard; when hrtc is killed, its own watchdog "
-                                 "ends the force, or nothing does",
+            log_line(fmt::format("tool {}: {} has no guard; if hrtc is killed, only the watchdog "
+                                 "of the device can end the force",
                                  tool, choice.library));
         }
     }
 }
 
-/// Guardian; null if no device needs one.
+/// Starts the guardian; null if no device needs one.
 Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options)
 {
     if (std::ranges::none_of(options.tools, wants_guard, &ToolOptions::device))
@@ -264,7 +265,7 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options, 
     return session;
 }
 
-/// Connects to hosts and viewers. Does nothing for files without viewers.
+/// Connects to servers and viewers. Does nothing if options_.is_watched is false.
 std::optional<Refusal> Session::connect()
 {
     if (options_.is_watched)
@@ -274,7 +275,7 @@ std::optional<Refusal> Session::connect()
         auto client = dds::DdsClient::create(options_.domain, name, log_line);
         if (!client && options_.transport == TransportKind::file)
         {
-            log_line(client.error().text + "; no viewer sees the run");
+            log_line(client.error().text + "; viewers can't see the run");
             return std::nullopt;
         }
         if (!client)
@@ -286,11 +287,12 @@ std::optional<Refusal> Session::connect()
     return std::nullopt;
 }
 
-/// Loads the scene of a file or a host. Does nothing without --scene.
+/// Loads the scene of a file or a server; without --scene does nothing but make the reader of
+/// poses.
 std::optional<Refusal> Session::take_scene()
 {
-    const bool has_hosts = options_.transport == TransportKind::dds;
-    if (has_hosts && (options_.follows_poses || !options_.scene.empty()))
+    const bool has_servers = options_.transport == TransportKind::dds;
+    if (has_servers && (options_.follows_poses || !options_.scene.empty()))
     {
         reader_ =
             std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange(), log_line);
@@ -299,7 +301,7 @@ std::optional<Refusal> Session::take_scene()
     {
         return std::nullopt;
     }
-    if (!has_hosts)
+    if (!has_servers)
     {
         return take_scene_file(options_);
     }
@@ -309,32 +311,32 @@ std::optional<Refusal> Session::take_scene()
         return shown.error();
     }
     scene_ = std::move(shown).value();
-    pin({scene_.name}, true, scene_.host_epoch);
+    pin({scene_.name}, true, scene_.server_epoch);
     return std::nullopt;
 }
 
-/// Gives this host the authority for the name.
-void Session::pin(const ModelSelector& name, bool is_scene, std::uint64_t host_epoch)
+/// Adds an authority for the model or scene `name`, held by the server of that epoch.
+void Session::pin(const ModelSelector& name, bool is_scene, std::uint64_t server_epoch)
 {
     authorities_.emplace_back(client_->catalogue(), name, is_scene, options_.failover, log_line)
-        .pin(host_epoch);
+        .pin(server_epoch);
 }
 
-/// Makes the controller from the models, and the topics.
+/// Finds the models, and makes the controller and the topics.
 std::optional<Refusal> Session::assemble()
 {
-    const bool has_hosts = options_.transport == TransportKind::dds;
-    auto models = has_hosts ? find_published(options_, *client_, [this] { return goes_on(); })
-                            : find_in_files(options_);
+    const bool has_servers = options_.transport == TransportKind::dds;
+    auto models = has_servers ? find_published(options_, *client_, [this] { return goes_on(); })
+                              : find_in_files(options_);
     if (!models)
     {
         return models.error();
     }
     for (const ServedModel& model : models.value())
     {
-        if (has_hosts && options_.scene.empty())
+        if (has_servers && options_.scene.empty())
         {
-            pin({model.name, model.hash}, false, model.host_epoch);
+            pin({model.name, model.hash}, false, model.server_epoch);
         }
     }
     if (reader_ != nullptr && options_.scene.empty())
@@ -352,13 +354,13 @@ std::optional<Refusal> Session::assemble()
     if (client_ != nullptr)
     {
         std::unique_ptr<SceneKeeper> keeper;
-        if (has_hosts && options_.follows_poses)
+        if (has_servers && options_.follows_poses)
         {
             keeper = std::make_unique<SceneKeeper>(authorities_, std::move(reader_),
                                                    controller_->scene_parts(), scene_, log_line);
         }
-        auto topics = HostTopics::create(*client_, *controller_, authorities_, std::move(keeper),
-                                         options_.shows_refinement_state);
+        auto topics = ServerTopics::create(*client_, *controller_, authorities_, std::move(keeper),
+                                           options_.shows_refinement_state);
         if (!topics)
         {
             return failure(topics.error().text);

@@ -7,8 +7,8 @@
 #include "platform/controller/controller.hpp"
 #include "platform/controller/finished_run.hpp"
 #include "platform/controller/guardian.hpp"
-#include "platform/controller/host_topics.hpp"
 #include "platform/controller/run_hooks.hpp"
+#include "platform/controller/server_topics.hpp"
 #include "platform/scene/scene_choice.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/dds/authority.hpp"
@@ -25,24 +25,24 @@
 namespace tactus::hrtc
 {
 
-/// Session of one run: the models of the options, and a controller for them.
+/// Session of one run: finds the models of the options and assembles a controller for them.
 class Session
 {
 public:
-    /// Checks the machine (probe_realtime()), finds the models and assembles the controller. Waits
-    /// for models that aren't published yet.
+    /// Checks the machine (probe_realtime()) and outputs, finds the models and assembles the
+    /// controller. Waits at most options.wait_s for models that aren't published yet.
     [[nodiscard]] static Result<std::unique_ptr<Session>, Refusal> open(const Options& options,
                                                                         RunHooks hooks = {});
 
-    /// Options, completed by the scene's objects, models and places.
+    /// Options given to open(), with the objects, models and places of the scene added.
     [[nodiscard]] const Options& options() const noexcept { return options_; }
     [[nodiscard]] Controller& controller() noexcept { return *controller_; }
     [[nodiscard]] const Controller& controller() const noexcept { return *controller_; }
 
     /// Runs the loop on its real-time thread beside the supervisor, the transport and the recorder,
-    /// and waits for its end. The hooks may end it early; forces fade then. `what` is the run's
-    /// name for the hooks. If an assertion fails, the devices are braked and the process ends with
-    /// exit code 2 (assertion_brake.hpp). Once.
+    /// and waits for its end. The hooks may end the run early; forces fade then. `what` is the
+    /// run's name for the hooks. If an assertion fails, the devices are braked and the process ends
+    /// with exit code 2 (assertion_brake.hpp). Call it once.
     [[nodiscard]] Result<FinishedRun, Refusal> run(const std::string& what);
 
 private:
@@ -52,19 +52,22 @@ private:
 
     [[nodiscard]] std::optional<Refusal> connect();
     [[nodiscard]] std::optional<Refusal> take_scene();
-    void pin(const ModelSelector& name, bool is_scene, std::uint64_t host_epoch);
+    void pin(const ModelSelector& name, bool is_scene, std::uint64_t server_epoch);
     [[nodiscard]] std::optional<Refusal> assemble();
 
-    std::unique_ptr<Guardian> guardian_; ///< Outlives the devices; null if none needs a guardian.
+    /// Guardian, which must outlive the devices; null if no device needs one.
+    std::unique_ptr<Guardian> guardian_;
     Options options_;
     RunHooks hooks_;
-    std::unique_ptr<dds::DdsClient> client_;   ///< Lives as long as the links of its models.
-    std::unique_ptr<dds::SceneReader> reader_; ///< Null unless needed; given to the scene keeper.
-    ShownScene scene_;                         ///< Scene of a host; empty otherwise.
-    std::vector<dds::Authority> authorities_;  ///< Authority of the scene, or one a model; none
-                                               ///< from files.
+    /// Must outlive the links of its models; null without DDS.
+    std::unique_ptr<dds::DdsClient> client_;
+    /// Null unless needed; moved to the scene keeper in assemble().
+    std::unique_ptr<dds::SceneReader> reader_;
+    ShownScene scene_; ///< Scene of a server; without a name otherwise.
+    /// Authority of the scene, or one a model; empty for files.
+    std::vector<dds::Authority> authorities_;
     std::unique_ptr<Controller> controller_;
-    std::unique_ptr<HostTopics> topics_; ///< Null without a client.
+    std::unique_ptr<ServerTopics> topics_; ///< Null without a client.
 };
 
 } // namespace tactus::hrtc

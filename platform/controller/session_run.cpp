@@ -33,11 +33,13 @@ namespace
 
 /// Longest time before the deadline at which the loop wakes to warm its caches.
 constexpr Duration kMarginMost = microseconds(100);
-/// Pause between two checks of the loop.
+/// Pause between two looks of the main thread at the loop.
 constexpr std::chrono::milliseconds kLook{20};
-/// Distance from the workspace's centre, in its radii, that suggests another unit of length.
+/// Distance of a device from its workspace's centre, in radii of the workspace, above which its
+/// unit of length is doubted.
 constexpr double kFarOutside = 5.0;
-/// Most descriptions of another device in a row, half a second of a waiting driver.
+/// Number of datagrams with another device's description, since the last accepted datagram, that
+/// ends the run. A waiting driver sends as many in half a second.
 constexpr std::uint64_t kOthersMax = 5;
 
 FinishedRun empty_run(const Controller& controller, const Options& options)
@@ -53,7 +55,7 @@ FinishedRun empty_run(const Controller& controller, const Options& options)
             .safety = SafetyRecord(tools)};
 }
 
-/// Budget governor; none in virtual time, where work takes no time.
+/// Budget governor; none in virtual time, where frames take no time.
 std::optional<BudgetGovernor> make_governor(const Options& options)
 {
     if (options.virtual_time)
@@ -64,7 +66,7 @@ std::optional<BudgetGovernor> make_governor(const Options& options)
                           options.frame_work());
 }
 
-/// True if a point of the model's frame is in the model's box.
+/// True if `place_m`, in the model's frame, is in the model's box.
 bool is_in_box(const ModelHeader& header, const Vec3& place_m)
 {
     const auto& extent = header.fields().extent_quanta;
@@ -73,7 +75,7 @@ bool is_in_box(const ModelHeader& header, const Vec3& place_m)
     return place_m.minCoeff() >= 0.0 && (high_m - place_m).minCoeff() >= 0.0;
 }
 
-/// Sets the trap for system calls on the haptic thread. Returns the reason if that fails.
+/// Traps system calls on the calling thread if requested. Returns the reason if that fails.
 std::optional<std::string> trap_calls(const Options& options)
 {
     if (!options.trap_system_calls)
@@ -118,7 +120,7 @@ SessionRun::SessionRun(const RunParts& parts)
     }
 }
 
-/// If the run was left early, the supervisor watches until the loop has ended.
+/// If the run was left early, the supervisor still watches until the loop has ended.
 SessionRun::~SessionRun()
 {
     loop_.stop();
@@ -126,7 +128,7 @@ SessionRun::~SessionRun()
     supervisor_.stop();
 }
 
-HostTopics* SessionRun::connected_topics()
+ServerTopics* SessionRun::connected_topics()
 {
     if (parts_.topics != nullptr)
     {
@@ -171,7 +173,7 @@ LoopParts SessionRun::loop_parts()
             .last_inputs = last_inputs_ ? &*last_inputs_ : nullptr,
             .frames = parts_.options.frames(),
             .is_virtual = time_.is_virtual(),
-            .hosts_gone = &transport_.hosts_gone(),
+            .servers_gone = &transport_.servers_gone(),
             .starved = &transport_.starved(),
             .scene_mailbox = has_topics ? &mailbox_ : nullptr,
             .telemetry = has_topics ? &telemetry_ : nullptr,
@@ -210,8 +212,8 @@ std::optional<Refusal> SessionRun::start_supervisor()
     return std::nullopt;
 }
 
-/// Does one period's work of the other threads in virtual time, as often as they would. Haptic
-/// thread.
+/// Does one period's work of the other threads in virtual time: as many transport rounds as their
+/// thread would do. Haptic thread.
 void SessionRun::work_between_frames()
 {
     allocation_counter::mark_this_thread(false);
@@ -287,7 +289,7 @@ void SessionRun::watch(const std::string& what)
     manager.stopping();
 }
 
-/// Takes the new events of the loop and the supervisor.
+/// Adds the new events of the loop and the supervisor to the safety record, and logs them.
 void SessionRun::take_events()
 {
     std::vector<SafetyEvent> events;
@@ -301,7 +303,7 @@ void SessionRun::take_events()
     tell_of_first_places();
 }
 
-/// Logs each tool whose first position is probably wrong.
+/// Logs, once, the tools whose first position is far outside the workspace or inside an object.
 void SessionRun::tell_of_first_places()
 {
     const std::span<const Vec3> places_m = loop_.first_places_m();
@@ -317,15 +319,15 @@ void SessionRun::tell_of_first_places()
         const double away_m = (places_m[tool] - Vec3(centre_m[0], centre_m[1], centre_m[2])).norm();
         if (away_m > kFarOutside * device.workspace_radius_m)
         {
-            log_line(fmt::format("tool {}: its device is {:.3g} m from the middle of its workspace "
-                                 "of {:.3g} m: does it send m?",
+            log_line(fmt::format("tool {}: the device is {:.3g} m from the centre of its workspace "
+                                 "with a radius of {:.3g} m; does it send metres?",
                                  tool, away_m, device.workspace_radius_m));
         }
     }
     tell_of_insides(places_m);
 }
 
-/// Logs tools that begin inside closed objects, at the objects' first poses.
+/// Logs and notes the tools that begin inside a closed object. Objects are at their first poses.
 void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
 {
     const Controller& controller = parts_.controller;
@@ -350,8 +352,8 @@ void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
                 {
                     parts_.topics->tell_begins_inside(tool);
                 }
-                log_line(fmt::format("tool {} begins inside {}, a closed surface, which holds it "
-                                     "from within and pulls back a hand that leaves: begin outside",
+                log_line(fmt::format("tool {} begins inside {}, a closed surface, which keeps it "
+                                     "inside and pulls the hand back; begin outside",
                                      tool, model.name));
             }
         }
@@ -368,14 +370,15 @@ void SessionRun::tell_of_device(const SafetyEvent& event)
     }
     devices_gone_[event.tool] = is_gone;
     const std::string& name = parts_.controller.tools()[event.tool].device->info().name;
-    device_log_.write(is_gone
-                          ? fmt::format("tool {}: its device, {}, is gone; no force until it is "
-                                        "back",
-                                        event.tool, name)
-                          : fmt::format("tool {}: its device, {}, is back", event.tool, name));
+    device_log_.write(
+        is_gone
+            ? fmt::format(
+                  "tool {}: the device {} is disconnected; no force until it is connected again",
+                  event.tool, name)
+            : fmt::format("tool {}: the device {} is connected again", event.tool, name));
 }
 
-/// Logs refused datagrams to a device's port at the first one, at ten, at a hundred, and so on.
+/// Logs refused datagrams to a UDP device's port at the first one, at ten, at a hundred, and so on.
 /// Ends the run if another device describes itself at the port.
 void SessionRun::tell_of_strangers()
 {
@@ -392,10 +395,10 @@ void SessionRun::tell_of_strangers()
         if (traffic.others >= kOthersMax && !std::exchange(done_.has_other_device, true))
         {
             loop_.stop();
-            device_log_.write(
-                fmt::format("tool {}: its device, {}, is gone, and another one describes itself at "
-                            "its port; a run keeps the limits of its first device, so it ends",
-                            tool, udp->info().name));
+            device_log_.write(fmt::format(
+                "tool {}: the device {} is disconnected, and another device describes itself at "
+                "its port; the run ends, because it keeps the limits of its first device",
+                tool, udp->info().name));
         }
         const auto all = std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
         if (all >= std::max<std::uint64_t>(10 * strangers_[tool], 1))
@@ -406,7 +409,7 @@ void SessionRun::tell_of_strangers()
             const bool has_value =
                 fault == udp::DatagramFault::content && traffic.wrong_value != nullptr;
             device_log_.write(
-                fmt::format("tool {}: {} to its device's port refused, most of them: {}{}{}", tool,
+                fmt::format("tool {}: {} to the port of the device refused, mostly: {}{}{}", tool,
                             counted(all, "datagram"), udp::text_of(fault), has_value ? ": " : "",
                             has_value ? traffic.wrong_value : ""));
         }
@@ -418,12 +421,12 @@ void SessionRun::tell_of_guardian()
 {
     if (parts_.guardian != nullptr && parts_.guardian->has_died())
     {
-        log_line("the guardian is gone; when hrtc is killed, nothing brakes its devices");
+        log_line("the guardian has ended; if hrtc is killed, nothing brakes its devices");
         parts_.guardian = nullptr;
     }
 }
 
-/// Ends the process after a failure; else does nothing.
+/// If an assertion or the loop has failed, ends the process; else does nothing.
 void SessionRun::end_after_failure()
 {
     if (loop_.has_failed() || AssertionBrake::has_failed())
@@ -435,8 +438,9 @@ void SessionRun::end_after_failure()
     }
 }
 
-/// Keeps the recording up to the failed frame, or else the last inputs. The failed frame is added
-/// if the haptic thread failed. Returns advice on how to repeat the failure, which may be empty.
+/// Finishes the recording, with the failed frame if the haptic thread failed in one; without
+/// --record writes the last inputs if the haptic thread failed. Returns advice on how to repeat the
+/// failure, or why there is none; may be empty.
 std::string SessionRun::keep_failed_frame()
 {
     const bool is_frames = loop_.has_failed() && loop_.has_failed_itself();
@@ -449,7 +453,8 @@ std::string SessionRun::keep_failed_frame()
         }
         finish_recording();
         return failed && done_.recording && done_.recording->lost_from == kNoFrame
-                   ? fmt::format("'hrtc --replay {}' runs it again", parts_.options.record_path)
+                   ? fmt::format("'hrtc --replay {}' repeats the failure",
+                                 parts_.options.record_path)
                    : std::string();
     }
     if (!is_frames)
@@ -461,10 +466,9 @@ std::string SessionRun::keep_failed_frame()
     {
         return kept.error().text;
     }
-    return fmt::format(
-        "'--device replay:{}' gives the hand's last {} frames again; only a run with "
-        "--record can be replayed as it was",
-        kept.value().path, kept.value().frames);
+    return fmt::format("'--device replay:{}' repeats the motion of the last {}; only a run with "
+                       "--record can be replayed exactly",
+                       kept.value().path, counted(kept.value().frames, "frame"));
 }
 
 FinishedRun SessionRun::finish()
@@ -486,11 +490,11 @@ FinishedRun SessionRun::finish()
     done_.thread = haptic_thread_->report();
     done_.supervisor_fifo = is_supervised && supervisor_thread_->report().fifo;
     done_.timer = time_.timer().counts();
-    done_.host_was_lost = transport_.host_was_lost();
+    done_.server_was_lost = transport_.server_was_lost();
     note_topics();
     for (const std::string& line : done_.thread.refused)
     {
-        log_line("without " + line);
+        log_line("ran without a right: " + line);
     }
     return std::move(done_);
 }
@@ -529,7 +533,7 @@ void SessionRun::finish_trace()
     done_.trace = trace.value();
 }
 
-/// Copies the results of the topics, whose threads have ended.
+/// Copies the results of the topics into done_. The threads that use them must have ended.
 void SessionRun::note_topics()
 {
     if (parts_.topics != nullptr)

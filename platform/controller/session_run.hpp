@@ -7,9 +7,9 @@
 #include "platform/controller/controller.hpp"
 #include "platform/controller/finished_run.hpp"
 #include "platform/controller/guardian.hpp"
-#include "platform/controller/host_topics.hpp"
 #include "platform/controller/recorder.hpp"
 #include "platform/controller/run_hooks.hpp"
+#include "platform/controller/server_topics.hpp"
 #include "platform/controller/trace_file.hpp"
 #include "platform/controller/transport_thread.hpp"
 #include "platform/loop/assertion_brake.hpp"
@@ -32,22 +32,22 @@
 namespace tactus::hrtc
 {
 
-/// Parts of one run. All of them outlive the run.
+/// Parts of one run. All must outlive the run.
 struct RunParts
 {
     const Options& options;
     Controller& controller;
-    HostTopics* topics{nullptr}; ///< Null without DDS.
-    Recorder* recorder{nullptr}; ///< Null without --record.
-    TraceFile* trace{nullptr};   ///< Null without --trace.
-    Guardian* guardian{nullptr}; ///< Null if no device needs a guardian.
+    ServerTopics* topics{nullptr}; ///< Null without DDS.
+    Recorder* recorder{nullptr};   ///< Null without --record.
+    TraceFile* trace{nullptr};     ///< Null without --trace.
+    Guardian* guardian{nullptr};   ///< Null if no device needs a guardian.
     RunHooks hooks{};
 };
 
-/// One run of the loop on its real-time thread, with supervisor and transport on their own. In
-/// virtual time there is no supervision, and the loop's thread does all the work in turn. The main
-/// thread calls start(), wait() and finish() in this order, each once. The transport thread runs
-/// from construction on.
+/// One run of the loop on its real-time thread, with supervisor and transport on threads of their
+/// own. In virtual time there is no supervisor, and the loop's thread does all other work between
+/// frames. The main thread calls start(), wait() and finish() in this order, each once. The
+/// transport thread runs from construction on.
 class SessionRun
 {
 public:
@@ -56,19 +56,19 @@ public:
     SessionRun& operator=(const SessionRun&) = delete;
     ~SessionRun();
 
-    /// Starts supervisor and loop. If that is refused, returns the reason, and the loop doesn't
-    /// run.
+    /// Starts supervisor and loop. Returns the reason if a thread can't start; the loop doesn't run
+    /// then.
     [[nodiscard]] std::optional<Refusal> start();
 
-    /// Waits for the loop's end and reports its progress; `what` is the run's name there. The hooks
-    /// may end the loop early. After a failed assertion this does not return.
+    /// Waits for the loop's end and reports its progress to the hooks, which may end the loop
+    /// early. `what`: the run's name for the hooks. After a failed assertion this does not return.
     void wait(const std::string& what);
 
-    /// Ends all threads.
+    /// Waits for the loop, ends all other threads and returns the results.
     [[nodiscard]] FinishedRun finish();
 
 private:
-    [[nodiscard]] HostTopics* connected_topics();
+    [[nodiscard]] ServerTopics* connected_topics();
     [[nodiscard]] RefinementStateTap* make_front();
     [[nodiscard]] LoopParts loop_parts();
     [[nodiscard]] std::optional<Refusal> start_supervisor();
@@ -95,13 +95,16 @@ private:
     std::optional<BudgetGovernor> governor_;
     SceneMailbox mailbox_;
     TelemetryTap telemetry_;
-    std::optional<RefinementStateTap> front_; ///< None with --no-refinement-state.
-    std::optional<LastInputs> last_inputs_;   ///< None with --record.
+    /// Tap of the refinement state; none if no viewer gets it.
+    std::optional<RefinementStateTap> front_;
+    std::optional<LastInputs> last_inputs_; ///< None with --record.
     TransportRounds transport_;
     std::optional<TransportThread> transport_thread_;
     HapticLoop loop_;
-    std::vector<bool> devices_gone_;       ///< Last logged state, one a tool.
-    std::vector<std::uint64_t> strangers_; ///< Refused datagrams at the last log line, one a tool.
+    /// One a tool: true if its device was last logged as lost.
+    std::vector<bool> devices_gone_;
+    /// Number of refused datagrams at the last log line, one a tool.
+    std::vector<std::uint64_t> strangers_;
     RateLimitedLog device_log_{log_line};
     Supervisor supervisor_;
     std::optional<AssertionBrake> brake_;

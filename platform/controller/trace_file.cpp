@@ -23,7 +23,7 @@ enum Row : int
     kChunkLoader = 3,
 };
 
-/// Time in microseconds, the unit of the format, to the nanosecond.
+/// Nanoseconds as text in microseconds, the unit of the format, with three decimals.
 std::string microseconds_text(std::int64_t ns)
 {
     const std::int64_t amount = std::abs(ns);
@@ -102,7 +102,7 @@ void TraceFile::step()
     flush();
 }
 
-/// After an error the remaining text is dropped, so it takes no memory.
+/// Writes the text to the file. After an error it is dropped, so it takes no memory.
 void TraceFile::flush()
 {
     if (stored_)
@@ -112,8 +112,8 @@ void TraceFile::flush()
     text_.clear();
 }
 
-/// Time since the first event that is written. Earlier starts on another thread have negative
-/// times.
+/// Time in microseconds since the first written event, negative if `at` is earlier: another
+/// thread's event may be.
 std::string TraceFile::time_text(MonotonicTime at)
 {
     origin_ = origin_.value_or(at);

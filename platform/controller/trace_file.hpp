@@ -21,15 +21,15 @@ struct TraceResult
     std::uint64_t frames{0};
     std::uint64_t rounds{0}; ///< Rounds of the chunk loader with requests or pieces.
     std::uint64_t bytes{0};
-    std::uint64_t lost{0}; ///< Frames and rounds dropped for lack of room.
+    std::uint64_t lost{0}; ///< Frames and rounds dropped because a queue was full.
 };
 
 /// Writes the times of frames, stages, queues and chunk loader in Chrome's trace format
-/// (docs/report.md). Uses its own thread of ordinary priority.
+/// (docs/report.md), on a thread of ordinary priority.
 class TraceFile
 {
 public:
-    /// Starts the thread. Call it before the haptic thread starts.
+    /// Starts the thread. Call it before the haptic thread starts. `period`: period of the loop.
     TraceFile(AtomicFile file, Duration period);
     TraceFile(const TraceFile&) = delete;
     TraceFile& operator=(const TraceFile&) = delete;
@@ -38,7 +38,8 @@ public:
     /// Tap for the haptic and the transport thread.
     [[nodiscard]] TraceTap& tap() noexcept { return tap_; }
 
-    /// Writes the waiting events and commits the file. Once, when no thread uses the tap any more.
+    /// Writes the waiting events and commits the file. Call it once, when no other thread uses the
+    /// tap any more.
     [[nodiscard]] Result<TraceResult, Refusal> finish();
 
 private:
@@ -54,8 +55,9 @@ private:
     AtomicFile file_;
     Duration period_;
     TraceTap tap_;
-    std::string text_;                    ///< Text that is not in the file yet.
-    std::optional<MonotonicTime> origin_; ///< Zero of the file's times.
+    std::string text_; ///< Text that is not in the file yet.
+    /// Zero of the file's times; none before the first event.
+    std::optional<MonotonicTime> origin_;
     TraceResult result_;
     Result<Done, Refusal> stored_{Done{}};
     std::optional<WriterThread> thread_; ///< Last member, because it uses the others.

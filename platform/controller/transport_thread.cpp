@@ -50,10 +50,10 @@ void TransportRounds::watch_models()
 {
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        const bool is_gone = models_[i].link->state() == LinkState::host_gone;
-        hosts_gone_.set(i, is_gone);
+        const bool is_gone = models_[i].link->state() == LinkState::server_gone;
+        servers_gone_.set(i, is_gone);
         starved_.set(i, chunk_loader_.is_starved(static_cast<std::uint32_t>(i)));
-        host_was_lost_.store(host_was_lost_.load() || is_gone);
+        server_was_lost_.store(server_was_lost_.load() || is_gone);
     }
 }
 

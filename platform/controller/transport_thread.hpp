@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/controller/host_topics.hpp"
+#include "platform/controller/server_topics.hpp"
 #include "platform/loop/model_marks.hpp"
 #include "platform/loop/trace_tap.hpp"
 #include "platform/machine/time.hpp"
@@ -16,28 +16,28 @@
 namespace tactus::hrtc
 {
 
-/// Repeated work of the transport: the chunk loader's round, a check of the hosts, and the topics'
-/// step. The model's link reports the loss and return of its host. The loop continues with the
+/// Rounds of the transport: each runs the chunk loader's round, a check of the servers, and the
+/// topics' step. The loss of a server is marked for its models; the loop continues with the
 /// resident data.
 class TransportRounds
 {
 public:
-    /// Chunk loader and models must outlive the rounds. No other thread may touch them or the
-    /// models' links meanwhile. `topics` steps after each round of the chunk loader. `trace` takes
-    /// the times of the rounds with requests or pieces. Both may be null.
+    /// Chunk loader and models must outlive the rounds. During run(), no other thread may touch
+    /// them or the models' links. `topics` steps in each round, after the chunk loader. `trace`
+    /// takes the times of the rounds with requests or pieces. Both may be null.
     TransportRounds(ChunkLoader& chunk_loader, const std::vector<ServedModel>& models,
-                    HostTopics* topics, TraceTap* trace = nullptr) noexcept
+                    ServerTopics* topics, TraceTap* trace = nullptr) noexcept
         : chunk_loader_(chunk_loader), models_(models), topics_(topics), trace_(trace)
     {
     }
 
-    /// Runs one round. One thread at a time.
+    /// Runs one round at the time `now`. One thread at a time.
     void run(MonotonicTime now);
 
-    /// True if a model's host was lost since the start. Any thread.
-    [[nodiscard]] bool host_was_lost() const noexcept { return host_was_lost_.load(); }
-    /// Models whose host is lost at present.
-    [[nodiscard]] const ModelMarks& hosts_gone() const noexcept { return hosts_gone_; }
+    /// True if a model's server was lost since the start. Any thread.
+    [[nodiscard]] bool server_was_lost() const noexcept { return server_was_lost_.load(); }
+    /// Models whose server is lost at present.
+    [[nodiscard]] const ModelMarks& servers_gone() const noexcept { return servers_gone_; }
     /// Models whose requested pieces are overdue (ChunkLoader::is_starved).
     [[nodiscard]] const ModelMarks& starved() const noexcept { return starved_; }
 
@@ -47,19 +47,19 @@ private:
 
     ChunkLoader& chunk_loader_;
     const std::vector<ServedModel>& models_;
-    HostTopics* topics_;
+    ServerTopics* topics_;
     TraceTap* trace_;
-    TracedRound told_; ///< Sums from the start to the last traced round.
-    std::atomic<bool> host_was_lost_{false};
-    ModelMarks hosts_gone_;
+    TracedRound told_; ///< Sums of all rounds up to the last traced one.
+    std::atomic<bool> server_was_lost_{false};
+    ModelMarks servers_gone_;
     ModelMarks starved_;
 };
 
-/// Pause between two rounds, the longest delay of a request.
+/// Pause between two rounds, by which a request may be delayed.
 inline constexpr Duration kRoundPause = microseconds(300);
 
-/// Runs rounds on one thread of ordinary priority, a few thousand a second. Start it before the
-/// haptic thread, because threads inherit policy and processor.
+/// Runs the rounds on one thread of ordinary priority, a few thousand a second. Make it before the
+/// haptic thread, whose policy and processor it would inherit.
 class TransportThread
 {
 public:

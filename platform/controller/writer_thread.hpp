@@ -11,22 +11,22 @@
 namespace tactus::hrtc
 {
 
-/// Writes the contents of a queue periodically on a thread of ordinary priority. Start it before
-/// the haptic thread, because threads inherit policy and processor.
+/// Calls a function periodically on a thread of ordinary priority, to write the contents of a
+/// queue. Make it before the haptic thread, whose policy and processor it would inherit.
 class WriterThread
 {
 public:
-    /// Pause between two rounds. The queues hold about 300 ms at the highest rate.
+    /// Pause between two calls. The queues have room for about 300 ms at the highest rate.
     static constexpr std::chrono::milliseconds kPause{5};
 
-    /// `step` does a round. The objects that it uses must outlive the thread.
+    /// `step` is the function. The objects that it uses must outlive the thread.
     explicit WriterThread(std::function<void()> step)
         : step_(std::move(step)), thread_([this] { run(); })
     {
     }
     WriterThread(const WriterThread&) = delete;
     WriterThread& operator=(const WriterThread&) = delete;
-    /// Waits for the end of the present round.
+    /// Waits for the end of the present call.
     ~WriterThread()
     {
         stopped_.store(true);

@@ -13,7 +13,8 @@
 namespace tactus
 {
 
-/// The brake of a device with its own clock: at once, or by a fade over kBrakeFade.
+/// Brake of a device: ends the force at once, or fades it over kBrakeFade. All times are those of
+/// the device's clock.
 ///
 ///     share of the last force
 ///     1 -----.                        .---   the next write after the release
@@ -23,13 +24,13 @@ namespace tactus
 ///          brake_softly()   |      release
 ///                        or brake() here
 ///
-/// Its state is one word, so that no thread sees parts of two brakes. It is sequentially
-/// consistent: it is rare and orders nothing else.
+/// The state is one atomic word, so that no thread sees parts of two brakes. All accesses are
+/// sequentially consistent; no other data depends on their order.
 class BrakeLatch
 {
 public:
-    /// Any thread: brakes at once. If a fade had begun, the brake counts from the fade's start; if
-    /// it was released meanwhile, the brake has no start.
+    /// Any thread: ends the force at once. A fade under way keeps its start. If another thread
+    /// releases the fade during this call, the start becomes time 0.
     void brake(MonotonicTime now) noexcept
     {
         if (!begin(at_once(now)))
@@ -37,38 +38,41 @@ public:
             word_.fetch_and(~kOff);
         }
     }
-    /// Any thread.
+    /// Any thread: starts a fade at `now`; no effect if the brake is on.
     void brake_softly(MonotonicTime now) noexcept { begin(at_once(now) | kFades); }
 
-    /// Any thread.
+    /// Any thread: true from a brake until its release.
     [[nodiscard]] bool is_on() const noexcept { return is_on(word_.load()); }
-    /// Any thread: true if it was on at that time.
+    /// Any thread: true if the brake is on and began at or before `time`.
     [[nodiscard]] bool is_on_at(MonotonicTime time) const noexcept
     {
         return time >= began(word_.load());
     }
-    /// Any thread: the earlier of that time and the start of the brake.
+    /// Any thread: the earlier of `time` and the brake's start; `time` if the brake is off.
     [[nodiscard]] MonotonicTime before(MonotonicTime time) const noexcept
     {
         return std::min(time, began(word_.load()));
     }
-    /// Any thread: fraction of the last force at that time, 0 to 1.
+    /// Any thread: fraction of the last written force that is left at `time`. 1 before a brake, 0
+    /// after a fade or during a brake at once.
     [[nodiscard]] double share_at(MonotonicTime time) const noexcept
     {
         return share_at(time, word_.load());
     }
 
-    /// Haptic thread: true if a fade is not over. Then the next write ends it.
+    /// Haptic thread: true if a fade still leaves some force. Then the next write releases the
+    /// brake.
     [[nodiscard]] bool try_yield(MonotonicTime now) noexcept
     {
         const std::uint64_t word = word_.load();
         is_yielding_ = is_on(word) && share_at(now, word) > 0.0;
         return is_yielding_;
     }
-    /// Haptic thread.
+    /// Haptic thread: releases the brake, even during a fade.
     void release() noexcept { word_.store(kOff); }
 
-    /// Haptic thread, in a write: true if the write takes effect.
+    /// Haptic thread, once in each write: true if the write takes effect. Releases a fading brake
+    /// if try_yield() returned true before.
     [[nodiscard]] bool lets_through() noexcept
     {
         std::uint64_t word = word_.load();
@@ -81,13 +85,13 @@ public:
             return false;
         }
         is_yielding_ = false;
-        // It fails if brake() was called since.
+        // The exchange fails if another thread called brake() after the load.
         return word_.compare_exchange_strong(word, kOff);
     }
 
 private:
-    /// The word has the brake's start in ns, above two bits. Without the upper bit the brake is on,
-    /// without both it is on at once: so one operation turns any state into that.
+    /// The word holds the brake's start in ns above two low bits. These are 0 for a brake at once,
+    /// 1 for a fade and 3 for no brake. Clearing both bits turns any state into a brake at once.
     static constexpr std::uint64_t kFades = 1;
     static constexpr std::uint64_t kOff = 3;
 
@@ -113,7 +117,7 @@ private:
         return fades(word) && gone < kBrakeFade ? left : 0.0;
     }
 
-    /// Returns false if it was on.
+    /// Sets the word to `on` if the brake is off; otherwise returns false without effect.
     bool begin(std::uint64_t on) noexcept
     {
         std::uint64_t off = kOff;
@@ -121,7 +125,7 @@ private:
     }
 
     std::atomic<std::uint64_t> word_{kOff};
-    bool is_yielding_{false}; ///< Used by the haptic thread only.
+    bool is_yielding_{false}; ///< True if the next write may end the fade; haptic thread.
 };
 
 } // namespace tactus

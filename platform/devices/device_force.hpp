@@ -12,7 +12,7 @@
 namespace tactus
 {
 
-/// Conversion to the type of device records, which use no Eigen.
+/// Converts a vector to the array type of DeviceInfo, DeviceSample and Wrench.
 [[nodiscard]] inline std::array<double, 3> to_array(const Vec3& v) noexcept
 {
     return {v.x(), v.y(), v.z()};
@@ -23,8 +23,8 @@ namespace tactus
     return {v[0], v[1], v[2]};
 }
 
-/// The wrench that a device renders of a written one: HapticDevice::write(). Counts changes in
-/// `status`.
+/// Wrench that a device renders for a written one, by the rules of HapticDevice::write(). Counts
+/// clamped and refused wrenches in `status`.
 [[nodiscard]] inline Wrench take_wrench(const Wrench& written, const DeviceInfo& info,
                                         DeviceStatus& status) noexcept
 {

@@ -8,8 +8,9 @@
 #include "rt_core/math/similarity.hpp"
 #include "transport/base/refusal.hpp"
 
-// Any thread: values. The conversions of positions and forces of a frame neither wait nor allocate;
-// create() and to_world(DeviceInfo) may allocate and are called before the loop.
+// Any thread: DeviceFrame is a value. Its conversions of positions, velocities, rotations and
+// forces neither wait nor allocate. create() and to_world(DeviceInfo) may allocate; call them
+// before the loop.
 namespace tactus
 {
 
@@ -20,17 +21,19 @@ namespace tactus
 ///     force_device   = rotation^T x force_world, likewise the torque
 ///
 /// A scale of 10 makes 1 cm of the device's motion 10 cm of the world. Forces and angles are not
-/// scaled: a newton of the world is a newton on the user. With a scale of s, the device has in the
-/// world its mass, damping and stiffness divided by s; to_world(DeviceInfo) converts them, and the
-/// stiffness limit of docs/stability.md holds unchanged. The default is the identity.
+/// scaled: a newton of the world is a newton on the user. With a scale of s, mass, damping and
+/// stiffness of the device in the world are its own divided by s; to_world(DeviceInfo) converts
+/// them. The stiffness limit of docs/stability.md then holds unchanged. The default is the
+/// identity.
 class DeviceFrame
 {
 public:
     DeviceFrame() = default;
 
-    /// Refuses a translation beyond kPoseReachMax_m on an axis, a scale out of [kPoseScaleMin,
-    /// kPoseScaleMax], and a matrix other than a right-handed rotation; one within
-    /// kRotationTolerance is made orthonormal to rounding.
+    /// `in_world`: pose and scale of the device's frame in the world. Refuses a translation beyond
+    /// kPoseReachMax_m on an axis, a scale out of [kPoseScaleMin, kPoseScaleMax], and a matrix
+    /// other than a right-handed rotation. Rotations within kRotationTolerance are made orthonormal
+    /// to rounding.
     [[nodiscard]] static Result<DeviceFrame, Refusal> create(const Similarity& in_world);
 
     [[nodiscard]] Vec3 position_to_world(const Vec3& device_m) const noexcept
@@ -59,7 +62,8 @@ public:
     {
         return frame_.rotation.transpose() * world_nm;
     }
-    /// Device information in the world from that of the device; rates and delay are unchanged.
+    /// Converts device information from the device's frame to the world's. Rates, delay, forces and
+    /// rotational limits are unchanged.
     [[nodiscard]] DeviceInfo to_world(const DeviceInfo& device) const;
 
 private:

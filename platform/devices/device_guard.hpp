@@ -5,16 +5,18 @@
 namespace tactus
 {
 
-/// The guard of a device, in a process of its own: ends the force if the program that drives the
-/// device dies. It is made before the device is opened, and holds all resources of brake(), since
-/// there may be no memory or file by then. Used by the one thread of that process.
+/// Ends a device's force if the program that drives the device dies. Runs in the guardian, a
+/// process of its own, on its one thread. Create a guard before the device is opened. The
+/// constructor acquires all resources of brake(), since memory or files may be unavailable after
+/// the death.
 class DeviceGuard
 {
 public:
     virtual ~DeviceGuard() = default;
 
-    /// The program has died, or is about to: ends the force and damps the motion. May wait. False
-    /// if the device doesn't obey. Called twice if the program's end takes long.
+    /// Ends the force and damps the motion, once the program has died or is dying. May wait.
+    /// Returns false if the device doesn't obey. A second call follows if the program takes long to
+    /// end.
     [[nodiscard]] virtual bool brake() noexcept = 0;
 
 protected:

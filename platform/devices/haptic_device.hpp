@@ -18,11 +18,11 @@ namespace tactus
 struct DeviceInfo
 {
     std::string name;
-    DeviceLimits limits; ///< Limits; the device itself clamps larger forces.
+    DeviceLimits limits; ///< Limits, in the world; the device clamps larger forces.
     std::array<double, 3> workspace_centre_world_m{};
-    double workspace_radius_m{0.0}; ///< Radius of the workspace around that centre.
-    double speed_max_m_per_s{0.0};  ///< Largest speed of a held device; faster: not held.
-    std::int64_t rate_min_hz{0};    ///< Loop rates, both included.
+    double workspace_radius_m{0.0}; ///< Radius of the workspace around its centre.
+    double speed_max_m_per_s{0.0};  ///< Largest speed of a held device; above it the force fades.
+    std::int64_t rate_min_hz{0};    ///< Lowest and highest supported loop rate.
     std::int64_t rate_max_hz{0};
     /// Gripper force in either direction; 0: no gripper with a motor.
     double gripper_force_max_n{0.0};
@@ -30,22 +30,24 @@ struct DeviceInfo
     [[nodiscard]] bool operator==(const DeviceInfo&) const = default;
 };
 
-/// One reading. `position_world_m` is the device position, which may be deep inside a model while
-/// the proxy stays on the surface.
+/// One reading of a device. `position_world_m` is the device position, which may be deep inside a
+/// model while the proxy stays on the surface.
 struct DeviceSample
 {
     std::array<double, 3> position_world_m{};
     /// Velocity; none if not measured.
     std::optional<std::array<double, 3>> velocity_world_m_per_s;
-    /// Time of the position, never before the last one; a simulated device counts frames x period
-    /// from zero.
+    /// Time of the position, never before that of the last reading. A simulated device counts
+    /// integrated periods from 0.
     MonotonicTime time;
-    /// Number of the reading, from 0. A simulated device's motion depends only on it.
+    /// Number of the reading, from 0. A simulated device without a clock moves by this number
+    /// alone.
     std::uint64_t frame{0};
-    /// False if the device had no trustworthy position; the others are then the last good ones.
+    /// False if the device had no trustworthy position. Pose, velocities and time are then the last
+    /// valid ones.
     bool valid{false};
-    bool connected{true}; ///< False: the device does not answer; then nothing is valid.
-    /// False: a switch or sensor reports that it is not held. Always true without one.
+    bool connected{true}; ///< False: the device does not answer; `valid` is false, too.
+    /// False: a switch or sensor reports that no hand holds the device. Always true without one.
     bool deadman_held{true};
     /// Rotation of the handle, as a quaternion x, y, z, w of length 1 to kRotationTolerance. None
     /// if not measured.
@@ -59,8 +61,8 @@ struct DeviceSample
 /// Number of buttons in DeviceSample.
 inline constexpr std::uint32_t kButtons = 32;
 
-/// Wrench of a device on the user, in the world's axes. A device without a torque renders the force
-/// alone.
+/// Wrench of a device on the user, along the world's axes. A device without torque motors renders
+/// the force alone.
 struct Wrench
 {
     std::array<double, 3> force_world_n{};
@@ -73,24 +75,24 @@ struct Wrench
 enum class DeviceState
 {
     idle,  ///< No force: none was written yet, or the device's watchdog ended the last one.
-    force, ///< The last written force is held until the next write, or the device's watchdog.
+    force, ///< The last written force is held until the next write or the watchdog.
     brake  ///< Writes are ignored; the device damps its motion.
 };
 
 struct DeviceStatus
 {
     DeviceState state{DeviceState::idle};
-    double force_left{0.0};  ///< Fraction of the last written force while it brakes, 0 to 1.
-    std::uint64_t frames{0}; ///< Number of readings.
-    std::uint64_t forces_clamped{0}; ///< Writes beyond the device's limits.
-    std::uint64_t forces_refused{0}; ///< Writes that were not finite; zero was written instead.
+    double force_left{0.0};          ///< Fraction of the last written force during a brake, 0 to 1.
+    std::uint64_t frames{0};         ///< Number of readings.
+    std::uint64_t forces_clamped{0}; ///< Number of writes beyond the device's limits.
+    std::uint64_t forces_refused{0}; ///< Number of non-finite writes; each rendered zero.
 };
 
-/// Duration of the fade of a soft brake, equal to that of ForceFader.
+/// Duration of the fade of brake_softly(). Must equal kFadeTime_s, that of ForceFader (asserted).
 inline constexpr Duration kBrakeFade = milliseconds(50);
 
 /// A device that the haptic thread reads and writes once a period. read(), write(), release_brake()
-/// and status() belong to that thread; they never block, allocate or throw. brake() and
+/// and status() are called by that thread only; they never block, allocate or throw. brake() and
 /// brake_softly() may be called from any thread at any time.
 class HapticDevice
 {
@@ -100,24 +102,25 @@ public:
     /// Capabilities, constant over the device's life; any thread.
     [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
 
-    /// Newest reading; without a new one the last again, with its time.
+    /// Returns the newest reading; if there is no new one, the last reading again, with its time.
     [[nodiscard]] virtual DeviceSample read() noexcept = 0;
 
-    /// Sets the wrench on the user, held until the next write. A device with a watchdog ends it if
-    /// no write comes for too long, and is idle then. Force and torque are scaled by one factor to
-    /// the device's limits, the gripper's force by another. If any value is not finite, the wrench
-    /// is zero.
+    /// Sets the wrench on the user, which is held until the next write. A device with a watchdog
+    /// ends the wrench and becomes idle if writes stop. One factor scales force and torque to the
+    /// device's limits; the gripper's force is clamped on its own. If any value is not finite, the
+    /// wrench is zero.
     virtual void write(const Wrench& wrench) noexcept = 0;
 
-    /// Ends the force at once and damps the motion, even if the haptic thread hangs. It latches
-    /// until release_brake(); braking again has no effect.
+    /// Ends the force at once and damps the motion, even if the haptic thread hangs. The brake
+    /// holds until release_brake(); a second call has no effect.
     virtual void brake() noexcept = 0;
 
-    /// Brakes like brake(), but the force falls linearly over kBrakeFade. A device that can't do so
-    /// brakes at once. brake() ends the fade.
+    /// Brakes like brake(), but the force falls linearly over kBrakeFade; brake() ends that fade. A
+    /// device without a fade brakes at once.
     virtual void brake_softly() noexcept { brake(); }
 
-    /// The next write takes effect again; until then the force is zero, or continues to fade.
+    /// Lets the next write take effect again. Until that write the force is zero, or a fade
+    /// continues.
     virtual void release_brake() noexcept = 0;
 
     [[nodiscard]] virtual DeviceStatus status() const noexcept = 0;

@@ -11,8 +11,8 @@
 namespace tactus
 {
 
-/// Forwards to another device; base of wrappers that change one behaviour. Threads as those of the
-/// device.
+/// Forwards all calls to another device. Base of wrappers that change one behaviour. Threads as in
+/// HapticDevice.
 class WrappedDevice : public HapticDevice
 {
 public:

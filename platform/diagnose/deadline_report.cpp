@@ -27,9 +27,9 @@ struct Quantity
     LatencyHistogram DeadlinePhase::*histogram;
 };
 constexpr std::array kQuantities{
-    Quantity{"wake", "Woken so much later than asked", &DeadlinePhase::wake},
+    Quantity{"wake", "Wake-up latency", &DeadlinePhase::wake},
     Quantity{"cpu", "Processor time of a frame", &DeadlinePhase::cpu},
-    Quantity{"response", "From the deadline to the force written, lost periods counted",
+    Quantity{"response", "Time from the deadline to the force, lost periods included",
              &DeadlinePhase::response},
 };
 
@@ -80,15 +80,15 @@ std::uint64_t count_of(const DeadlinePhase& phase, const char* key)
 std::string table_of(std::span<const DeadlinePhase> phases)
 {
     std::string text = fmt::format(
-        "{:<12}{:>37}{:>19}{:>24}{:>17}\n"
-        "{:<12}{:>8}{:>8}{:>5}{:>8}{:>8}{:>7}{:>6}{:>6}{:>8}{:>7}{:>9}{:>8}{:>9}\n",
-        "", "deadlines", "cpu us", "wake us", "response us", "", "cycles", "missed", "own",
-        "machine", "stopped", "p50", "p99", "max", "p50", "p99", "max", "p99", "max");
+        "{:<12}{:>50}{:>19}{:>24}{:>17}\n"
+        "{:<12}{:>8}{:>8}{:>10}{:>16}{:>8}{:>7}{:>6}{:>6}{:>8}{:>7}{:>9}{:>8}{:>9}\n",
+        "", "deadlines", "cpu us", "wake us", "response us", "", "cycles", "missed", "overruns",
+        "latency misses", "stopped", "p50", "p99", "max", "p50", "p99", "max", "p99", "max");
     for (const DeadlinePhase& phase : phases)
     {
         const auto us = [](const LatencyHistogram& histogram, double q)
         { return to_us(histogram.quantile(q)); };
-        text += fmt::format("{:<12}{:>8}{:>8}{:>5}{:>8}{:>8}", phase.name, cycles_of(phase),
+        text += fmt::format("{:<12}{:>8}{:>8}{:>10}{:>16}{:>8}", phase.name, cycles_of(phase),
                             count_of(phase, "missed"), count_of(phase, "overrun"),
                             count_of(phase, "latency_misses"), count_of(phase, "stopped"));
         text += fmt::format("{:>7.0f}{:>6.0f}{:>6.0f}{:>8.0f}{:>7.0f}{:>9.0f}{:>8.0f}{:>9.0f}\n",
@@ -105,8 +105,8 @@ plot::Table figures_of(std::span<const DeadlinePhase> phases)
     plot::Table table{{{"", false},
                        {"cycles"},
                        {"deadlines missed"},
-                       {"own"},
-                       {"machine"},
+                       {"overruns"},
+                       {"latency misses"},
                        {"stopped"},
                        {"cpu p99, us"},
                        {"wake p99, us"},
@@ -161,8 +161,8 @@ std::string verdict_of(const SelfCheck& check, std::span<const DeadlinePhase> ph
     if (!check.is_passed())
     {
         return fmt::format(
-            "failed: the self-check flagged {} of {}, and {} in frames without one, so "
-            "nothing else counts; run it again with less beside it",
+            "failed: the self-check flagged {} of {}, and {} in frames without a fault; the other "
+            "results are invalid; repeat the test with fewer other programs",
             check.flagged, counted(check.injected, "fault"), check.false_flags);
     }
     return fmt::format("{}: {} in {}", own == 0 ? "passed" : "failed", counted(own, "overrun"),
@@ -205,12 +205,12 @@ std::string make_deadline_summary(const SelfCheck& check, std::span<const Deadli
                                   const DeadlineSetting& setting)
 {
     std::string text = "self-check  " + self_check_line(check) + '\n' + table_of(phases);
-    text += "wake as cyclictest tells it, us\n";
+    text += "wake-up latency in the form of cyclictest, us\n";
     for (const DeadlinePhase& phase : phases)
     {
         text += cyclictest_of(phase, setting);
     }
-    text += "cpu p99     of the period: ";
+    text += "cpu p99     share of the period: ";
     for (const DeadlinePhase& phase : phases)
     {
         const double share = static_cast<double>(phase.cpu.quantile(0.99).ns) /

@@ -15,7 +15,7 @@
 namespace tactus::hrtc
 {
 
-/// Settled run of a deadline test.
+/// One run of a deadline test, after its suspected frames were judged.
 struct DeadlinePhase
 {
     std::string name;               ///< Name: "alone" or "beside load".

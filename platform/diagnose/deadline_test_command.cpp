@@ -62,7 +62,7 @@ private:
     std::string path_;
 };
 
-/// Repeats the suspected frames. Returns the reason if that isn't possible.
+/// Replays the suspected frames to judge them. Returns the reason if that isn't possible.
 std::optional<std::string> settle(FinishedRun& run, const std::string& recording_path)
 {
     DeadlineAccount& deadlines = run.statistics.deadlines;
@@ -268,17 +268,18 @@ int run_deadline_test(int argc, char** argv, CommandForm form)
     std::vector<std::string> load_names{kLoadNames.begin(), kLoadNames.end()};
     form.footer.clear();
     form.name = "hrtc deadline-test";
-    form.description = "Runs the loop alone and beside load, and tells whose fault each missed "
-                       "deadline was. First faults are injected to prove that they are seen. Exit "
-                       "code 1 after an overrun. Takes the options of hrtc; "
-                       "--report FILE.json writes FILE.txt and FILE.html, too.";
+    form.description =
+        "Runs the haptic loop alone and beside load, and reports the cause of each missed "
+        "deadline. Before the runs, injected faults prove that the test detects them. Exit code 1 "
+        "after an overrun or an undetected fault. Takes the options of hrtc. --report FILE.json "
+        "also writes FILE.txt and FILE.html.";
     form.records = false;
     form.duration_s = kDuration_s;
     form.declare = [&load_names](CommandLine& line)
     {
-        line.add_option("--load", load_names,
-                        "What runs beside the second run: cpu, memory, disk, separated by commas, "
-                        "or none")
+        line.add_option(
+                "--load", load_names,
+                "Load beside the second run: cpu, memory, disk, separated by commas, or none")
             .separated_by(',')
             .one_of({"cpu", "memory", "disk", "none"})
             .show_default();

@@ -38,29 +38,28 @@ std::string why_not_on(int cpu)
 
 int run_doctor(int argc, char** argv)
 {
-    CommandLine line("hrtc doctor",
-                     "Says what of this machine is in the way of the haptic loop: what was found, "
-                     "why it matters, and the command that mends it. Exit code 1 when something "
-                     "critical is missing.");
+    CommandLine line(
+        "hrtc doctor",
+        "Checks whether this machine is fit for the haptic loop. Prints each problem, its effect "
+        "and the command that fixes it. Exit code 1 if something critical is missing.");
     std::optional<int> cpu;
     std::optional<std::uint32_t> domain;
     double wait_s = 3.0;
     bool as_json = false;
     bool shows_good = false;
-    line.add_option("--cpu", cpu, "Processor that the haptic thread is to have [not chosen]")
+    line.add_option("--cpu", cpu, "Processor planned for the haptic thread [default: none]")
         .integer_between(0, 1'023);
     const CommandOption of_domain =
         line.add_option("--domain", domain,
-                        "DDS domain to join, too: who is heard there, and which models are "
-                        "published [none]")
+                        "DDS domain to check as well, with its participants and published models "
+                        "[default: none]")
             .integer_between(0U, dds::kMaxDomain);
-    line.add_option("--wait", wait_s, "Seconds to listen there")
+    line.add_option("--wait", wait_s, "Time to listen in that domain, in seconds")
         .number_between(0.1, 3'600.0)
         .show_default()
         .needs(of_domain);
-    line.add_flag("--all", shows_good,
-                  "Say of what is good, too, what was found and why it matters");
-    line.add_flag("--json", as_json, "Print one JSON object");
+    line.add_flag("--all", shows_good, "Also print the details of the checks without a problem");
+    line.add_flag("--json", as_json, "Print the result as one JSON object");
     if (const std::optional<int> code = line.parse(argc, argv))
     {
         return *code;

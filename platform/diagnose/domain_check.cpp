@@ -28,7 +28,7 @@ doctor::Finding not_joined(const Refusal& refusal)
     return {kDomainCheck,
             doctor::Verdict::critical,
             printable(refusal.text),
-            "hrtc gets no models from it",
+            "hrtc gets no models from this domain",
             {}};
 }
 
@@ -79,12 +79,11 @@ doctor::Finding check_domain(std::uint32_t domain, std::chrono::milliseconds wai
     {
         return {kDomainCheck,
                 doctor::Verdict::advice,
-                "nobody is heard " + where + more,
-                "hrtc finds no model there: " +
+                "no program is heard " + where + more,
+                "hrtc finds no model on this domain: " +
                     printable_line(dds::why_unheard(domain).value_or(
-                        "no spm_publish runs on that domain, or the file "
-                        "of CYCLONEDDS_URI names another interface or "
-                        "other peers, or a firewall is between")),
+                        "no spm_publish runs on this domain, or CYCLONEDDS_URI names another "
+                        "interface or other peers, or a firewall blocks DDS")),
                 {fmt::format("spm_publish MODEL.spm --domain {}", domain),
                  fmt::format("sudo ss -ulpn '( sport >= :{} and sport <= :{} )'",
                              7'410 + 250 * domain, 7'429 + 250 * domain)}};
@@ -94,7 +93,7 @@ doctor::Finding check_domain(std::uint32_t domain, std::chrono::milliseconds wai
             has_models ? doctor::Verdict::good : doctor::Verdict::advice,
             fmt::format("{} heard {}; models published: {}{}", joined_names(heard), where, models,
                         more),
-            has_models ? "hrtc finds these models" : "hrtc finds no model there",
+            has_models ? "hrtc finds these models" : "hrtc finds no model on this domain",
             has_models ? std::vector<std::string>{}
                        : std::vector{fmt::format("spm_publish MODEL.spm --domain {}", domain)},
             true};

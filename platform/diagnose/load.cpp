@@ -112,7 +112,7 @@ std::optional<std::string> use_disk(bool (*goes_on)())
     const int file = mkstemp(path.data());
     if (file < 0)
     {
-        return path + ": can't be made: " + error_text(errno);
+        return path + ": can't be created: " + error_text(errno);
     }
     unlink(path.c_str()); // The file is removed when it is closed.
     std::vector<char> block(kBlockBytes, 'x');
@@ -128,7 +128,7 @@ std::optional<std::string> use_disk(bool (*goes_on)())
                      : std::optional(path + ": can't be written and read: " + reason);
 }
 
-/// True if the other end of standard input is still open. Drops the bytes that arrive.
+/// True if the writer of standard input is still open. Drops the bytes that arrive.
 bool stdin_is_open()
 {
     pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -175,7 +175,8 @@ Result<Load, std::string> Load::start(std::span<const LoadKind> kinds, const std
     }
     load.their_end_ = ends[0];
     load.lifeline_ = ends[1];
-    fcntl(load.lifeline_, F_SETFD, FD_CLOEXEC); // Else the workers would keep the pipe open.
+    // Otherwise the workers would keep the pipe open.
+    fcntl(load.lifeline_, F_SETFD, FD_CLOEXEC);
     fcntl(load.their_end_, F_SETFD, FD_CLOEXEC);
     const auto processors = std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L);
     for (const LoadKind kind : kinds)
@@ -247,11 +248,10 @@ std::optional<LoadKind> Load::ended()
 
 int run_load(int argc, char** argv)
 {
-    CommandLine line("hrtc load",
-                     "Keeps this machine busy, to see what that does to a loop beside it, until "
-                     "its standard input ends: work of one kind on one processor.");
+    CommandLine line("hrtc load", "Keeps one processor of this machine busy with one kind of work "
+                                  "until standard input ends, to test a haptic loop under load.");
     std::string name;
-    line.add_option("KIND", name, "cpu, memory or disk")
+    line.add_option("KIND", name, "Kind of work: cpu, memory or disk")
         .required()
         .one_of({kLoadNames.begin(), kLoadNames.end()});
     if (const std::optional<int> code = line.parse(argc, argv))

@@ -27,13 +27,13 @@ inline constexpr std::array<const char*, 3> kLoadNames{"cpu", "memory", "disk"};
 
 [[nodiscard]] std::optional<LoadKind> parse_load(std::string_view name) noexcept;
 
-/// Does this work on the calling thread until `goes_on`, called every few milliseconds, returns
-/// false. Returns the reason if the work had to stop earlier.
+/// Does work of this kind on the calling thread until `goes_on`, called every few milliseconds,
+/// returns false. Returns the reason if the work had to stop earlier.
 [[nodiscard]] std::optional<std::string> work(LoadKind kind, bool (*goes_on)());
 
-/// Processes of ordinary priority that do such work during this object's life. Threads would share
-/// the loop's memory, and their mappings would disturb it. The processes end by themselves when
-/// this process does.
+/// Processes of ordinary priority that do work of the given kinds during this object's life.
+/// Threads would share the loop's memory, and their mappings would disturb it. The processes end by
+/// themselves when this process does.
 class Load
 {
 public:
@@ -48,7 +48,8 @@ public:
     Load& operator=(const Load&) = delete;
     ~Load();
 
-    /// Kind of the first work that has ended by itself, if any.
+    /// Removes the first worker that has ended by itself, and returns its kind; none if all still
+    /// run.
     [[nodiscard]] std::optional<LoadKind> ended();
 
 private:
@@ -62,8 +63,8 @@ private:
     [[nodiscard]] std::optional<std::string> start_one(LoadKind kind, const std::string& program);
 
     std::vector<Worker> workers_;
-    int lifeline_{-1}; ///< Writing end of the workers' standard input. They live until it is
-                       ///< closed.
+    /// Writing end of the workers' standard input; the workers run until it is closed.
+    int lifeline_{-1};
     int their_end_{-1};
 };
 

@@ -10,6 +10,7 @@
 #include "platform/options/program_hooks.hpp"
 #include "platform/program/leave_with.hpp"
 #include "platform/program/stop_signals.hpp"
+#include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
 
@@ -65,8 +66,8 @@ void work(std::uint64_t steps) noexcept
     result = value;
 }
 
-/// Steps that fill two periods at the best measured pace. They take longer on a machine that is
-/// slow at times. They exceed the limit even if the machine becomes almost twice as fast.
+/// Steps of work() that fill two periods at the best measured pace. They take longer on a machine
+/// that is slow at times, and exceed the limit even if the machine becomes almost twice as fast.
 std::uint64_t steps_of_overwork(Duration period)
 {
     constexpr std::uint64_t kSteps = 20'000;
@@ -238,9 +239,9 @@ Result<SelfCheck, Refusal> run_self_check(Options options)
 std::string self_check_line(const SelfCheck& check)
 {
     const auto fault = check.unseen ? InjectionPlan::at(*check.unseen) : std::nullopt;
-    return fmt::format("{} of {} injected faults flagged as what they are, {} false flags{}{}",
-                       check.flagged, check.injected, check.false_flags,
-                       fault ? fmt::format("; unseen in frame {}: {}", *check.unseen,
+    return fmt::format("{} of {} injected faults flagged correctly, {}{}{}", check.flagged,
+                       check.injected, counted(check.false_flags, "false flag"),
+                       fault ? fmt::format("; missed in frame {}: {}", *check.unseen,
                                            kInjectedFaultNames[static_cast<std::size_t>(*fault)])
                              : "",
                        check.allocations_counted ? "" : "; this build doesn't count allocations");

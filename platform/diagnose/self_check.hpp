@@ -28,7 +28,7 @@ inline constexpr std::size_t kInjectedFaults = 4;
 inline constexpr std::array<const char*, kInjectedFaults> kInjectedFaultNames{
     "overwork", "page fault", "allocation", "sleep"};
 
-/// Plan of the faults in the frames of a self-check.
+/// Plan of the frames of a self-check into which faults are injected.
 struct InjectionPlan
 {
     static constexpr std::uint64_t kFirst = 100;
@@ -68,8 +68,8 @@ struct SelfCheck
     }
 };
 
-/// Compares the flags of a run with injected faults to the plan. Before that, the suspects are
-/// settled by a repeated injection of the planned faults.
+/// Compares the flags of a run with injected faults to the plan. Before that, each suspected frame
+/// is judged: its planned fault is injected again.
 [[nodiscard]] SelfCheck judge_injections(DeadlineAccount& deadlines, const FaultInjector& injector);
 
 /// Proves that the account of deadlines detects faults. A short run with the options and simulated

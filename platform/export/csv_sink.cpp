@@ -23,7 +23,7 @@ void CsvSink::begin(Cells cells, std::string prefix)
     prefix_ = std::move(prefix);
 }
 
-/// Our names and words contain no comma, quote or line's end.
+/// Adds a cell without quotes, since no name or word contains a comma, quote or line's end.
 void CsvSink::cell(const char* name, const char* suffix, std::string_view value)
 {
     line_ += has_cells_ ? "," : "";

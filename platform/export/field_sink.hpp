@@ -15,11 +15,11 @@
 namespace tactus
 {
 
-/// Receives named values in order; a name ends in the value's frame and unit, like those of the
-/// code. The caller is independent of the output: columns, JSON or its schema. One thread, not the
-/// haptic one: it allocates.
+/// Receives named values in order and writes them as columns, JSON or a JSON schema. A name ends in
+/// the value's frame and unit, like the names of the code. One thread, not the haptic one: it
+/// allocates.
 ///
-/// One kind of object has the same names in the same order, for all values.
+/// Objects of one kind must add the same names in the same order, for all values.
 class FieldSink
 {
 public:
@@ -28,7 +28,7 @@ public:
     FieldSink& operator=(const FieldSink&) = delete;
     virtual ~FieldSink() = default;
 
-    /// Adds a number, which may be non-finite.
+    /// Adds a number, which may be non-finite; none: unknown.
     virtual void number(const char* name, const std::optional<double>& value) = 0;
     virtual void integer(const char* name, const std::optional<std::int64_t>& value) = 0;
     virtual void flag(const char* name, bool value) = 0;

@@ -28,7 +28,7 @@ namespace
 /// Largest number of pair channels, more than a reader displays; pairs beyond it share a channel.
 constexpr std::size_t kMaxPairChannels = 4'096;
 
-/// Size of the buffer before it is written to the file.
+/// Size from which on buffered text is written to the file.
 constexpr std::size_t kBufferBytes = std::size_t{1} << 16U;
 
 /// Writes the set-up of a recording.
@@ -100,7 +100,7 @@ private:
     Result<Done, Refusal> stored_{Done{}};
 };
 
-/// One line a frame: tools with the nearest object of each, and models.
+/// CSV with one line a frame: each tool and its nearest object, then each model.
 class CsvExport final : public FrameExport
 {
 public:
@@ -209,7 +209,8 @@ private:
     JsonSink sink_;
 };
 
-/// One channel for each object: PlotJuggler and Foxglove make one series of each.
+/// MCAP with one channel for each tool, model and pair, so that PlotJuggler and Foxglove make one
+/// series of each.
 class McapExport final : public FrameExport
 {
 public:

@@ -23,8 +23,8 @@ namespace tactus
 class FrameExport
 {
 public:
-    /// Opens an export. Refused in one line if the file can't be written. The name is_export_name()
-    /// (asserted); the set-up must outlive the export.
+    /// Opens an export. Refused in one line if the file can't be written. is_export_name(path) must
+    /// hold (asserted); `setup` must outlive the export.
     [[nodiscard]] static Result<std::unique_ptr<FrameExport>, Refusal>
     create(const std::string& path, const RecordedSetup& setup);
     FrameExport(const FrameExport&) = delete;
@@ -33,7 +33,7 @@ public:
 
     /// Adds the next frame. After an error frames are dropped; commit() reports it.
     virtual void add(const ReplayedFrameView& frame) = 0;
-    /// Gives the file its name. Once, as the last call; without it no file is left.
+    /// Completes the file and gives it its name. Call once, last; without commit() no file is left.
     [[nodiscard]] virtual Result<Done, Refusal> commit() = 0;
 
 protected:

@@ -59,7 +59,7 @@ std::optional<T> where(bool is_so, const T& value)
     return is_so ? std::optional<T>(value) : std::nullopt;
 }
 
-/// Quaternion of a matrix; none if it is no rotation, as a faulty device may send it.
+/// Quaternion of a matrix; none if the matrix is no rotation, which a faulty device may send.
 std::optional<Eigen::Quaterniond> quaternion(const Mat3& rotation)
 {
     const Eigen::Quaterniond turned(rotation);
@@ -67,7 +67,7 @@ std::optional<Eigen::Quaterniond> quaternion(const Mat3& rotation)
     return where(std::isfinite(norm) && norm > 0.0, turned.normalized());
 }
 
-/// Number of events of this kind that a frame took, for instance chunks or index pages.
+/// Number of events of this kind that a frame took from the queues.
 std::int64_t count_of(std::span<const QueueEvent> events, QueueEventKind kind)
 {
     std::int64_t count = 0;
@@ -146,10 +146,10 @@ void tell_device(FieldSink& sink, const ToolState& state, const DeviceRecord& de
     sink.number("gripper_m", device.gripper_m);
     sink.vector("device_world_m", state.position_m);
     sink.rotation("device_rotation_world", quaternion(state.rotation));
-    sink.vector("hand_world_m",
-                device.hand ? std::optional<Vec3>(device.hand->position_m) : std::nullopt);
-    sink.rotation("hand_rotation_world",
-                  device.hand ? quaternion(device.hand->rotation) : std::nullopt);
+    sink.vector("clutched_device_world_m",
+                device.pose ? std::optional<Vec3>(device.pose->position_m) : std::nullopt);
+    sink.rotation("clutched_device_rotation_world",
+                  device.pose ? quaternion(device.pose->rotation) : std::nullopt);
     sink.vector("velocity_world_m_per_s", device.velocity_m_per_s);
     sink.vector("angular_velocity_world_rad_per_s", device.angular_velocity_rad_per_s);
     sink.vector("sent_force_world_n", device.sent_n);
@@ -246,7 +246,7 @@ void tell_tool(FieldSink& sink, const ReplayedFrameView& frame, std::size_t tool
     sink.number("lag_m", output.lag_m);
     sink.number("clear_m", output.clear_m);
     sink.number("object_way_m", output.object_way_m);
-    sink.number("object_turn_rad", output.object_turn_rad);
+    sink.number("object_rotation_rad", output.object_rotation_rad);
     sink.vector("carried_world_m", output.carried_m);
     sink.vector("carried_world_rad", output.carried_rad);
     sink.flag("in_contact", output.in_contact);

@@ -10,8 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// Fields of a run: one function for each kind of object. SI units; world frame unless a name says
-// otherwise. Any thread, but not the haptic one: sinks allocate.
+// Functions that write the fields of a run, one for each kind of object. SI units; world frame
+// unless a name says otherwise. Any thread, but not the haptic one: sinks allocate.
 namespace tactus
 {
 

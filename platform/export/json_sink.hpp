@@ -23,7 +23,8 @@ public:
     void vector(const char* name, const std::optional<Vec3>& value) override;
     void rotation(const char* name, const std::optional<Eigen::Quaterniond>& value) override;
 
-    /// Values until close() belong to an object under this name, or, in a list, to its next item.
+    /// Opens an object: under this name, or as the next item of the open list. Values until close()
+    /// belong to the object.
     void open(const char* name);
     void open_item();
     void close();

@@ -104,7 +104,7 @@ McapWriter::McapWriter(std::string_view library)
 std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view json_schema)
 {
     TACTUS_ASSERT(schema_count_ < std::numeric_limits<std::uint16_t>::max());
-    const auto id = ++schema_count_; // 0 stands for none.
+    const auto id = ++schema_count_; // Id 0 means no schema.
     Bytes content;
     put(content, id);
     put_text(content, name);
@@ -168,7 +168,7 @@ void McapWriter::close_chunk()
     append(record);
     const std::uint64_t indexes_start = position_;
 
-    Bytes places; // Places of the indexes, by channel.
+    Bytes places; // Offsets of the message indexes in the file, by channel.
     for (const auto& [channel, messages] : chunk_index_)
     {
         put(places, channel);

@@ -13,10 +13,9 @@
 namespace tactus
 {
 
-/// Formats an MCAP file, format version 0: messages in uncompressed chunks, each followed by its
-/// indexes, and a summary of all at the end, so that a reader finds any time without reading the
-/// rest. Chunks, data and summary have checksums. The owner takes the bytes and stores them in
-/// order.
+/// Formats an MCAP file, format version 0. Messages are in uncompressed chunks, each followed by
+/// its indexes. A summary at the end lets a reader find any time without reading the rest. Chunks,
+/// data and summary have checksums. The owner takes the bytes and stores them in order.
 ///
 /// Messages and schemas are JSON: encodings "json" and "jsonschema". One thread, not the haptic
 /// one: it allocates.
@@ -26,7 +25,7 @@ public:
     /// Size at which a chunk ends, after the message that reaches it.
     static constexpr std::size_t kChunkBytes = std::size_t{1} << 20U;
 
-    /// `library` names the program.
+    /// `library`: name of this program, for the file's header.
     explicit McapWriter(std::string_view library);
 
     /// Adds a schema and returns its id, 1 and up; at most 65,535 (asserted).
@@ -34,7 +33,7 @@ public:
     /// Adds a channel and returns its id, 0 and up; its messages have this schema.
     [[nodiscard]] std::uint16_t add_channel(std::string_view topic, std::uint16_t schema);
 
-    /// Adds a message. `sequence` counts the messages of the channel's source; times need not
+    /// Adds a message. `sequence`: number that the source gave to the message. Times need not
     /// ascend.
     void add_message(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
                      std::string_view json);

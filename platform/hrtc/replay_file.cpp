@@ -90,7 +90,7 @@ int replay_file(const std::string& path, const Kernels* kernels,
     {
         if (recording.value().has_failed() && number + 1 == recording.value().frame_count())
         {
-            log(fmt::format("{}: frame {} failed in the run and runs now", path, number));
+            log(fmt::format("{}: frame {}, which failed in the run, runs now", path, number));
         }
     };
     watch.ends = [&](std::uint64_t number, const RecordedFrame& given, const FrameOutput& returned)

@@ -20,9 +20,8 @@ namespace
 {
 
 constexpr std::array kSubcommands{
-    Subcommand{"doctor", "what of this machine is in the loop's way, and how to mend it",
-               run_doctor},
-    Subcommand{"deadline-test", "whose fault each missed deadline is, alone and beside load",
+    Subcommand{"doctor", "checks whether this machine is fit for the haptic loop", run_doctor},
+    Subcommand{"deadline-test", "reports the cause of each missed deadline, alone and beside load",
                [](int argc, char** argv) { return run_deadline_test(argc, argv, program_form()); }},
     Subcommand{"load", "keeps this machine busy", run_load},
 };
@@ -55,12 +54,12 @@ std::string subcommand_names()
 
 std::string describe_subcommands()
 {
-    std::string text = "Instead of a run:";
+    std::string text = "Other commands:";
     for (const Subcommand& each : subcommands())
     {
         text += fmt::format("\n  {:<26}{}", fmt::format("hrtc {}", each.name), each.summary);
     }
-    return text + "\nEach has a --help of its own.";
+    return text + "\nEach command has its own --help.";
 }
 
 CommandForm program_form()

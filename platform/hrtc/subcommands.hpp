@@ -10,7 +10,7 @@
 namespace tactus::hrtc
 {
 
-/// Subcommand of hrtc, chosen by its first argument. It parses the other arguments.
+/// Subcommand of hrtc, chosen by the first argument of hrtc. It parses the further arguments.
 struct Subcommand
 {
     const char* name;
@@ -20,7 +20,7 @@ struct Subcommand
 
 [[nodiscard]] std::span<const Subcommand> subcommands() noexcept;
 
-/// Subcommand of the first argument, with or without two dashes. Null if it names none.
+/// Subcommand that the first argument names, with or without two dashes; null if there is none.
 [[nodiscard]] const Subcommand* find_subcommand(int argc, char** argv) noexcept;
 
 /// Names of the subcommands, separated by commas.
@@ -29,7 +29,7 @@ struct Subcommand
 /// Paragraph on the subcommands for the end of --help.
 [[nodiscard]] std::string describe_subcommands();
 
-/// Form of hrtc's own command line.
+/// Form of hrtc's command line without a subcommand.
 [[nodiscard]] CommandForm program_form();
 
 } // namespace tactus::hrtc

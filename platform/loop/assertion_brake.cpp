@@ -24,11 +24,12 @@ namespace tactus::hrtc
 namespace
 {
 
-/// A live reader of stderr reads within this time.
+/// Longest wait for room on stderr; a live reader needs less.
 constexpr std::chrono::seconds kPrintPatience{5};
-/// Time to finish a recording.
+/// Time for the main thread to finish the recording and end the process.
 constexpr std::chrono::seconds kMainPatience{10};
-/// A device behind a bus obeys brake() in the next cycle of its I/O thread, which takes less.
+/// Time for the devices to brake. A device behind a bus obeys brake() in the next cycle of its I/O
+/// thread, which takes less.
 constexpr std::chrono::milliseconds kBrakeTime{50};
 constexpr std::size_t kLineBytes = 1'024; ///< Below PIPE_BUF, so that a pipe writes it atomically.
 
@@ -47,16 +48,17 @@ enum class Report : std::uint8_t
     printed,
 };
 
-// All are sequentially consistent: they are used once in a process.
+// These atomics are sequentially consistent, because their cost does not matter: a process uses
+// them once.
 std::atomic<HapticLoop*> running_loop{nullptr};
 std::atomic<std::thread::id> main_thread{};
 std::atomic<bool> has_any_failed{false};
-/// First failure of the process. Its thread may fail again during the fade, and then never prints
-/// the first one.
+/// First failure of the process. If its thread fails again during the fade, the nested handler
+/// prints this one.
 Failure first_failure;
 std::atomic<Report> first_report{Report::none};
 
-/// Returns true for the first failure.
+/// Notes the failure if it is the process's first. Returns true then.
 bool note(const Failure& failure) noexcept
 {
     if (has_any_failed.exchange(true))
@@ -68,7 +70,7 @@ bool note(const Failure& failure) noexcept
     return true;
 }
 
-/// Waits until stderr can take a line at once, so that the write itself never waits.
+/// Waits, at most kPrintPatience, until stderr can take a line at once. False if it can't.
 bool has_room_on_stderr() noexcept
 {
     pollfd out{STDERR_FILENO, POLLOUT, 0};
@@ -83,8 +85,8 @@ bool has_room_on_stderr() noexcept
 
 using Line = std::array<char, kLineBytes>;
 
-/// Writes the output of snprintf, of that length. Neither allocates nor uses stdio's stream, whose
-/// lock a waiting thread may hold.
+/// Writes a line made by snprintf, whose result is `length`. Neither allocates nor uses stdio's
+/// stream, whose lock a waiting thread may hold.
 void put(const Line& line, int length) noexcept
 {
     if (length > 0 && has_room_on_stderr())
@@ -116,7 +118,7 @@ void print_first() noexcept
 void on_assertion(const char* condition, const char* file, int line) noexcept
 {
     const Failure failure{condition, file, line};
-    // It precedes the look-up of the loop: see ~AssertionBrake().
+    // Noting must precede the load of running_loop; see ~AssertionBrake().
     const bool is_first = note(failure);
     HapticLoop* loop = running_loop.load();
     if (loop != nullptr)
@@ -149,8 +151,8 @@ AssertionBrake::AssertionBrake(HapticLoop& loop) noexcept
     running_loop.store(&loop);
 }
 
-/// A failing thread notes the failure before it looks up the loop. So either the failure is seen
-/// here and the loop remains, or that thread finds no loop.
+/// A failing thread notes the failure before it loads running_loop. So either the failure is seen
+/// here and the loop is never destroyed, or that thread finds no loop.
 AssertionBrake::~AssertionBrake()
 {
     running_loop.store(nullptr);

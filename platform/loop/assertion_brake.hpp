@@ -9,8 +9,8 @@
 namespace tactus::hrtc
 {
 
-/// Installs the process's assertion handler; called at start-up. If no AssertionBrake exists, a
-/// failed assertion is printed and the process ends with kExitFailed.
+/// Installs the process's assertion handler; called once at start-up. While no AssertionBrake
+/// exists, a failed assertion is printed and ends the process with kExitFailed.
 void install_assertion_brake() noexcept;
 
 /// During its life, an assertion that fails on any thread first brakes the devices of a loop:
@@ -29,18 +29,18 @@ void install_assertion_brake() noexcept;
 class AssertionBrake
 {
 public:
-    /// Main thread, before any other thread works for the loop.
+    /// Call it on the main thread, before any other thread uses `loop`.
     explicit AssertionBrake(HapticLoop& loop) noexcept;
     AssertionBrake(const AssertionBrake&) = delete;
     AssertionBrake& operator=(const AssertionBrake&) = delete;
-    /// The loop may be destroyed afterwards. Ends the process if an assertion has failed.
+    /// After this, the loop may be destroyed. Ends the process if an assertion has failed.
     ~AssertionBrake();
 
     /// Any thread: true if an assertion has failed. The devices are braked or about to be.
     [[nodiscard]] static bool has_failed() noexcept;
 
-    /// Main thread: waits until the failure is printed and the devices had time to brake, prints
-    /// `advice` as a line unless empty, and ends the process with kExitFailed.
+    /// Main thread: waits until the failure is printed and the devices had time to brake, then ends
+    /// the process with kExitFailed. Prints `advice` as one line before; empty: no line.
     [[noreturn]] static void end_process(std::string_view advice = {}) noexcept;
 };
 

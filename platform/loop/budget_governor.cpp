@@ -12,13 +12,14 @@ namespace tactus
 namespace
 {
 
-/// The reserve takes at most this share of the set time.
+/// Largest share of the frame budget that the reserve for scatter takes.
 constexpr double kScatterShare = 0.5;
-/// Added to the variance: work that varies by less than this hardly determines the pace.
+/// Added to the variance of work in the step of the pace: work that varies by less than 2,000 units
+/// hardly moves the pace.
 constexpr double kDoubt = 2'000.0 * 2'000.0;
-/// Variance of work below which the pace is nearer to kFirstPace than to what frames tell.
+/// Variance of work below which the pace settles nearer to kFirstPace than to the measured one.
 constexpr double kPrior = 1'000.0 * 1'000.0;
-/// Share of the difference by which the pace follows in one frame, after the first frames.
+/// Least share of the difference by which the pace follows in a frame; the first frames take more.
 constexpr double kPaceGain = 1.0 / 16.0;
 
 } // namespace

@@ -14,11 +14,12 @@ namespace tactus
 struct FrameCost
 {
     Duration frame;
-    std::uint32_t work{0}; ///< WorkBudget::used().
+    std::uint32_t work{0}; ///< Work of the frame, as WorkBudget::used() counts it.
 };
 
-/// Upper level of scattered values: rises by an eighth of the difference at once, falls by one part
-/// in 256 a frame. For evenly scattered values it settles near the highest of 50.
+/// Upper level of scattered values: rises by an eighth of the difference to a higher value, and
+/// falls by 1/256 of the difference to a lower one. For values spread evenly over a range it
+/// settles at about 85 % of the range.
 class UpperLevel
 {
 public:
@@ -35,24 +36,25 @@ private:
 };
 
 /// Chooses the work budget of each frame (Budgets::work) from the times of earlier frames, so that
-/// frames fit into a set time on machines slower than an instruction a nanosecond. It works between
-/// frames without a clock: the budget is an input of the frame and can be recorded.
+/// a frame ends within `frame_budget` on machines slower than one instruction a nanosecond. Works
+/// between frames without a clock: the budget is an input of the frame and can be recorded.
 ///
-/// It fits a line by decayed least squares, time = rest + pace x work. The means follow in about
-/// kWindowFrames frames, and faster in the first ones; the pace changes only as far as the work
-/// varied. The time left after the rest and a reserve for scatter is given to work. The budget
-/// falls to its new value at once and rises by a sixteenth of the difference a frame, within
-/// `least` and `most`. So every frame progresses, even if the time is too short.
+/// The governor fits the line time = rest + pace x work by least squares with decaying weights. The
+/// means follow in about kWindowFrames frames, faster in the first ones; the pace changes only as
+/// far as the work varied. `frame_budget` minus the rest and a reserve for scatter is left for
+/// work. The budget falls to its new value at once and rises by a sixteenth of the difference a
+/// frame, always within `least` and `most`. So every frame progresses, even if the time is too
+/// short.
 ///
-/// A single frame of more than kStall times the set time is attributed to the machine and ignored;
+/// A single frame longer than kStall times `frame_budget` is attributed to the machine and ignored;
 /// a second one in a row counts. Same inputs give same budgets. Haptic thread, about 20 ns a frame.
 class BudgetGovernor
 {
 public:
     static constexpr double kWindowFrames = 128.0;
     static constexpr std::int64_t kStall = 4;
-    /// Initial pace in nanoseconds a unit of work, and the factor by which the pace may differ from
-    /// it, so that noise can't make work free.
+    /// Initial pace in nanoseconds a unit of work. The pace stays within a factor of kPaceRange of
+    /// it, so that noise can't make work seem free.
     static constexpr double kFirstPace = 1.0;
     static constexpr double kPaceRange = 40.0;
 
@@ -65,7 +67,7 @@ public:
     /// Learns from the frame with budget work() and chooses the next budget.
     void observe(const FrameCost& cost) noexcept;
 
-    /// True if the set time is too short for even the least work, by the present estimate.
+    /// True if, by the present estimate, even the least work exceeds the frame budget.
     [[nodiscard]] bool is_at_floor() const noexcept { return is_at_floor_; }
 
 private:
@@ -84,7 +86,7 @@ private:
     double work_work_{0.0}; ///< Decayed variance of the work.
     double work_time_{0.0}; ///< Decayed covariance of work and time.
     double pace_ns_{kFirstPace};
-    UpperLevel scatter_ns_{0.0}; ///< Excess of frame times over their prediction.
+    UpperLevel scatter_ns_{0.0}; ///< Excess of frame times over predict_ns(), in ns.
     bool last_was_long_{false};
     bool is_at_floor_{false};
 };

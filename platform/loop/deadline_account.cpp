@@ -21,7 +21,8 @@ CycleFlag when(bool is_so, CycleFlag flag) noexcept
     return is_so ? flag : CycleFlag::none;
 }
 
-/// Flags of a cycle that took too much processor time: an overrun or the machine's fault.
+/// Flags of a cycle that took too much processor time, with the verdict: `slowed` if it is the
+/// machine's fault, `over_cpu` if it is an overrun.
 CycleFlag cpu_verdict(CycleFlag flags, bool is_slowed) noexcept
 {
     return without(flags, CycleFlag::over_cpu | CycleFlag::slowed) |
@@ -73,8 +74,8 @@ void DeadlineAccount::add(std::uint64_t frame, const CycleMeasures& measures, st
     }
 }
 
-/// Number of times that the work of a frame of this `time` fits into the shown share of the limit:
-/// 0 to kShownTimes.
+/// Number of times that the work of a frame of this `time` is shown to fit: how often `time` goes
+/// into kShownShare of the limit, 0 to kShownTimes.
 std::uint64_t DeadlineAccount::times_shown(Duration time) const noexcept
 {
     const std::int64_t fits =
@@ -103,7 +104,7 @@ CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_wor
            when(is_missed, CycleFlag::missed);
 }
 
-/// `sign`: 1 to count, or the number that subtracts 1.
+/// Counts the cycle, or takes it back. `sign`: 1, or 2^64 - 1, which subtracts 1.
 void DeadlineAccount::count(CycleFlag flags, std::uint64_t sign) noexcept
 {
     for (std::size_t bit = 0; bit < kCycleFlags; ++bit)
@@ -152,7 +153,7 @@ void DeadlineAccount::settle(std::span<const std::uint64_t> over) noexcept
     }
 }
 
-/// Counts the cycle again with its new verdict.
+/// Takes the suspect's cycle back and counts it again with the new verdict.
 void DeadlineAccount::judge(Suspect& suspect, bool is_slowed) noexcept
 {
     constexpr std::uint64_t kTakeAway = ~std::uint64_t{0}; // Adding it modulo 2^64 subtracts one.

@@ -90,8 +90,8 @@ Duration HapticLoop::cpu_time() const noexcept
     return parts_.is_virtual ? Duration{} : read_thread_cpu_time();
 }
 
-/// Measures the thread's usage since the last cycle. A stop of the process looks like a sleep of
-/// the thread, or makes it late.
+/// Measures the thread's usage since the last cycle. The system is asked about a stop of the
+/// process only if the thread slept unexpectedly or was late.
 void HapticLoop::measure_thread(const ThreadUsage& now) noexcept
 {
     measures_.usage = now - usage_;
@@ -111,7 +111,7 @@ bool HapticLoop::has_to_end() noexcept
 {
     if (stopped_.load(std::memory_order_relaxed))
     {
-        end_ = std::min(end_, frame_ + fade_frames_); // Only the first call changes it.
+        end_ = std::min(end_, frame_ + fade_frames_); // Only the first call after stop() lowers it.
     }
     return frame_ >= end_ || failing_.load();
 }
@@ -135,7 +135,7 @@ void HapticLoop::wait_for_deadline() noexcept
     }
 }
 
-/// Warms the caches. This and the frame must make no system call.
+/// Warms the caches, with system calls trapped as in the frame: neither may make one.
 void HapticLoop::warm_caches() noexcept
 {
     system_call_trap::mark_frame(true);
@@ -153,7 +153,7 @@ FrameOutput HapticLoop::run_frame(const FrameInput& input) noexcept
     return output;
 }
 
-/// Runs after the forces are written and the frame's time is taken.
+/// Records the frame's inputs. Called after the forces are written and the frame's time is taken.
 void HapticLoop::record(const FrameInput& input, const FrameOutput& output) noexcept
 {
     if (parts_.tap != nullptr)
@@ -196,7 +196,8 @@ void HapticLoop::trace(const FrameOutput& output, MonotonicTime start) noexcept
     parts_.trace->add(traced);
 }
 
-/// Runs between frames, so that the next frame takes its budget as an input like any other.
+/// Chooses the next frame's work budget between frames, so that the frame takes it as an input like
+/// any other.
 void HapticLoop::choose_budgets(const FrameOutput& output) noexcept
 {
     if (parts_.governor != nullptr)
@@ -209,7 +210,7 @@ void HapticLoop::choose_budgets(const FrameOutput& output) noexcept
 
 void HapticLoop::fail() noexcept
 {
-    // A bug during the fade ends the fade, too.
+    // A second failure, during the fade, brakes at once.
     const bool is_first = !failing_.exchange(true);
     if (is_first && haptic_thread_.load() == std::this_thread::get_id())
     {
@@ -236,8 +237,8 @@ std::optional<GivenFrame> HapticLoop::failed_frame() noexcept
     return GivenFrame{given_, parts_.frame->pools().cache.taken(), devices_};
 }
 
-/// Haptic thread, in the middle of a frame that is not to be trusted: it uses only the forces sent
-/// last.
+/// Fades all forces on the haptic thread. The frame that was interrupted can't be trusted, so only
+/// the forces sent last are used.
 void HapticLoop::fade_last_forces() noexcept
 {
     for (std::size_t i = 0; i < ports_.size(); ++i)
@@ -275,7 +276,8 @@ void HapticLoop::note_first_places() noexcept
     if (std::ranges::all_of(states_, &ToolState::valid))
     {
         std::ranges::transform(states_, first_places_m_.begin(), &ToolState::position_m);
-        has_places_.store(true, std::memory_order_release); // Pairs with first_places_m().
+        // Pairs with the acquire in first_places_m().
+        has_places_.store(true, std::memory_order_release);
     }
 }
 
@@ -285,7 +287,7 @@ std::span<const Vec3> HapticLoop::first_places_m() const noexcept
                                                        : std::span<const Vec3>();
 }
 
-/// Network data on the objects enters the frame here and nowhere else.
+/// Input of the frame. Network data on the objects enters the frame here and nowhere else.
 FrameInput HapticLoop::read_scene(MonotonicTime now) noexcept
 {
     FrameInput input{states_, {}, measures_.budgets, now.ns};
@@ -332,7 +334,7 @@ void HapticLoop::make_safe(const FrameOutput& output) noexcept
             note(i, forces_[i].state, forces_[i].causes);
         }
     }
-    if (parts_.scene_mailbox != nullptr) // The poses at the start of the next frame need them.
+    if (parts_.scene_mailbox != nullptr) // The next refresh() of the mailbox needs the touches.
     {
         list_touches(*parts_.frame, output.pairs, parts_.scene_mailbox->belief(), touches_);
     }
@@ -343,7 +345,8 @@ bool HapticLoop::may_touch(const PairOutput& pair, const FrameOutput& output) co
     return tactus::may_touch(pair, output.tools[pair.tool], radii_m_[pair.tool]);
 }
 
-/// True if the tool may touch an object above the speed limit, as found by the frame.
+/// True if the tool may touch an object whose server's poses outran the object speed limit
+/// (SceneMailbox::exceeds_limit()).
 bool HapticLoop::meets_what_outruns(std::uint32_t tool) const noexcept
 {
     return std::ranges::any_of(touches_,
@@ -372,7 +375,7 @@ bool HapticLoop::starves(std::uint32_t tool, const FrameOutput& output) const no
                                });
 }
 
-/// Largest damping of all objects that the tool may touch.
+/// Largest material damping of all objects that the tool may touch, in N s/m; 0 without one.
 double HapticLoop::damping_touched(std::uint32_t tool, const FrameOutput& output) const noexcept
 {
     double damping_n_s_per_m = 0.0;
@@ -389,7 +392,7 @@ double HapticLoop::damping_touched(std::uint32_t tool, const FrameOutput& output
 ForceOff HapticLoop::causes_for_all(const FrameOutput& output) const noexcept
 {
     const ForceOff ends = frame_ + fade_frames_ >= end_ ? ForceOff::software : ForceOff::none;
-    return ends | (lacks_a_host(output) ? ForceOff::host : ForceOff::none);
+    return ends | (lacks_a_server(output) ? ForceOff::server : ForceOff::none);
 }
 
 /// True if the tool is in contact and one of its answers uses a pose that is too old.
@@ -400,12 +403,13 @@ bool HapticLoop::touches_old_pose(std::uint32_t tool, const FrameOutput& output)
                                { return pair.tool == tool && pair.kind == AnswerKind::stale; });
 }
 
-/// True if a model without host is streamed. A model that is resident as a whole needs no host.
-bool HapticLoop::lacks_a_host(const FrameOutput& output) const noexcept
+/// True if a model has lost its server and is not static. A static model is resident as a whole and
+/// needs no server.
+bool HapticLoop::lacks_a_server(const FrameOutput& output) const noexcept
 {
-    return parts_.hosts_gone != nullptr &&
-           parts_.hosts_gone->any_of([&output](std::size_t model)
-                                     { return !output.models[model].is_static; });
+    return parts_.servers_gone != nullptr &&
+           parts_.servers_gone->any_of([&output](std::size_t model)
+                                       { return !output.models[model].is_static; });
 }
 
 void HapticLoop::write_devices() noexcept

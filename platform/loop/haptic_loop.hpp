@@ -29,33 +29,37 @@
 namespace tactus::hrtc
 {
 
-/// Parts of the loop. All outlive it.
+/// Parts of the loop. All must outlive the loop.
 struct LoopParts
 {
     Frame* frame{nullptr};
     std::span<const ToolSetup> tools;
     PeriodicTimer* timer{nullptr};
     const Clock* clock{nullptr};
-    Budgets budgets; ///< Budgets of every frame; with a governor, work of the first.
+    /// Budgets of every frame. With a governor, `work` is that of the first frame only.
+    Budgets budgets;
     BudgetGovernor* governor{nullptr}; ///< Chooses the work budget of later frames; may be null.
     FrameTap* tap{nullptr};            ///< Records every frame; may be null.
     LastInputs* last_inputs{nullptr};  ///< Keeps every frame's device poses; may be null.
     std::uint64_t frames{0};           ///< Number of frames to run.
-    bool is_virtual{false}; ///< No time is measured, since others work on this thread, too.
-    const ModelMarks* hosts_gone{nullptr}; ///< Models whose host is gone; may be null.
-    const ModelMarks* starved{nullptr};    ///< Starved models; may be null.
-    SceneMailbox* scene_mailbox{nullptr};  ///< Motion of the objects; may be null.
-    TelemetryTap* telemetry{nullptr};      ///< Shows every frame; may be null.
-    RefinementStateTap* front{nullptr};    ///< Shows the refinement state; may be null.
-    TraceTap* trace{nullptr};              ///< Traces every frame's times; may be null.
+    /// Virtual time: processor time is not measured, because this thread does other threads' work,
+    /// too.
+    bool is_virtual{false};
+    const ModelMarks* servers_gone{nullptr}; ///< Models whose server is gone; may be null.
+    const ModelMarks* starved{nullptr};      ///< Starved models; may be null.
+    SceneMailbox* scene_mailbox{nullptr};    ///< Motion of the objects; may be null.
+    TelemetryTap* telemetry{nullptr};        ///< Shows every frame; may be null.
+    RefinementStateTap* front{nullptr};      ///< Shows the refinement state; may be null.
+    TraceTap* trace{nullptr};                ///< Traces every frame's times; may be null.
 };
 
-/// The haptic thread's work. Every period reads the devices, runs the frame, checks its forces,
-/// writes them and records the measures. Nothing else happens on that thread.
+/// Work of the haptic thread. Every period it reads the devices, runs the frame, makes its forces
+/// safe, writes them and records the measures. Nothing else happens on that thread.
 ///
-/// The loop orders the period; a ToolPort does the work of one tool. The last frames of a run fade
-/// the forces, whether the run ends as planned or by stop(). A device that another thread has
-/// braked is released at once and its force fades in from zero.
+/// The loop orders the steps of a period; a ToolPort does those of one tool. The last frames of a
+/// run fade the forces, whether the run ends as planned or by stop(). If another thread has braked
+/// a device, the loop releases the brake at once. The force then fades in from the part that the
+/// device still renders.
 class HapticLoop
 {
 public:
@@ -79,17 +83,18 @@ public:
     /// write; then all devices are braked permanently. On any other thread they are braked at once.
     void fail() noexcept;
 
-    /// Any thread, once has_failed(): true if the haptic thread found the bug, and works no more.
+    /// Any thread, once has_failed(): true if the haptic thread found the bug; it runs no more
+    /// frames.
     [[nodiscard]] bool has_failed_itself() const noexcept { return has_failed_itself_; }
-    /// Any thread, once has_failed(): input of the frame that failed, or whose forces failed; none
-    /// if it failed between frames.
+    /// Any thread, once has_failed(): input of the last frame, if the failure came before that
+    /// frame was recorded. None if the failure was between frames or on another thread.
     [[nodiscard]] std::optional<GivenFrame> failed_frame() noexcept;
 
     [[nodiscard]] const Heartbeat& heartbeat() const noexcept { return heartbeat_; }
     /// Any thread: positions of the tools in the first frame with valid positions of all devices.
     /// Empty before.
     [[nodiscard]] std::span<const Vec3> first_places_m() const noexcept;
-    /// State changes of the tools; one other thread may take them.
+    /// Log of the tools' state changes. One other thread may take them.
     [[nodiscard]] SafetyLog& safety_log() noexcept { return log_; }
 
 private:
@@ -117,7 +122,7 @@ private:
     [[nodiscard]] double damping_touched(std::uint32_t tool,
                                          const FrameOutput& output) const noexcept;
     [[nodiscard]] ForceOff causes_for_all(const FrameOutput& output) const noexcept;
-    [[nodiscard]] bool lacks_a_host(const FrameOutput& output) const noexcept;
+    [[nodiscard]] bool lacks_a_server(const FrameOutput& output) const noexcept;
     void write_devices() noexcept;
     void fade_last_forces() noexcept;
     void note(std::size_t tool, SafetyState state, ForceOff causes) noexcept;
@@ -128,18 +133,19 @@ private:
     std::deque<ToolPort> ports_;    ///< Ports, one a tool; never moved.
     std::vector<ToolState> states_; ///< States copied from the ports, contiguous for the frame.
     std::vector<ToolForce> forces_; ///< Forces copied from the ports, for the statistics.
-    /// First positions, one a tool; written only before has_places_.
+    /// First positions, one a tool; not written after has_places_ is set.
     std::vector<Vec3> first_places_m_;
     std::vector<double> radii_m_; ///< Tool radii, one a tool.
     /// Device records, one a tool, for displays and recordings.
     std::vector<DeviceRecord> devices_;
-    ObjectTouches touches_;         ///< Objects that tools may soon touch, after the last frame.
-    FrameInput given_;              ///< Input of the present or last frame.
-    bool is_recorded_{true};        ///< True if the frame of `given_` is recorded.
+    /// Touches found after the last frame, for SceneMailbox::refresh().
+    ObjectTouches touches_;
+    FrameInput given_;              ///< Input of the present frame, or else of the last.
+    bool is_recorded_{true};        ///< False from the start of a frame until it is recorded.
     bool has_failed_itself_{false}; ///< Set before failed_.
     std::uint64_t frame_{0};
-    std::uint64_t fade_frames_{0}; ///< Duration of the last fade, in frames.
-    std::uint64_t end_;            ///< Number of the frame at which the run ends.
+    std::uint64_t fade_frames_{0}; ///< Length of a fade (kFadeTime_s) in frames.
+    std::uint64_t end_;            ///< Number of frames of the run; stop() lowers it.
     std::atomic<std::thread::id> haptic_thread_{};
     Heartbeat heartbeat_;
     SafetyLog log_;
@@ -152,7 +158,7 @@ private:
     std::uint64_t allocations_{0}; ///< Allocations of this thread until the last cycle.
     std::atomic<bool> has_places_{false};
     std::atomic<bool> stopped_{false}; ///< Relaxed: it orders nothing else.
-    std::atomic<bool> failing_{false}; ///< Set by the first failure.
+    std::atomic<bool> failing_{false}; ///< Set by the first fail(), before the devices are braked.
     std::atomic<bool> failed_{false};
     std::atomic<bool> done_{false};
     std::atomic<std::uint64_t> frames_done_{0}; ///< Relaxed: for display only.

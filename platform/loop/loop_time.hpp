@@ -12,8 +12,8 @@
 namespace tactus::hrtc
 {
 
-/// Clock and timer of a run's loop. They are the machine's, or virtual ones that stand still during
-/// work, so that nothing is late and a run is as fast as the machine allows.
+/// Clock and timer of a run's loop: the machine's, or virtual ones. Virtual time stands still
+/// during work, so nothing is late and a run is as fast as the machine allows.
 class LoopTime
 {
 public:
@@ -22,7 +22,7 @@ public:
     LoopTime& operator=(const LoopTime&) = delete;
 
     [[nodiscard]] bool is_virtual() const noexcept { return is_virtual_; }
-    /// Virtual clock: one thread, the loop's while it runs.
+    /// Clock of the run. A virtual clock is for one thread only, the loop's while the loop runs.
     [[nodiscard]] const Clock& clock() const noexcept
     {
         return is_virtual_ ? static_cast<const Clock&>(virtual_clock_) : real_clock_;
@@ -31,7 +31,7 @@ public:
     {
         return is_virtual_ ? static_cast<PeriodicTimer&>(virtual_timer_) : real_timer_;
     }
-    /// Virtual time only: work of each period that the loop's thread does besides.
+    /// Sets the work that the loop's thread does once a period in virtual time, besides the loop.
     void set_meanwhile(std::function<void()> meanwhile)
     {
         virtual_timer_.set_meanwhile(std::move(meanwhile));
@@ -41,7 +41,8 @@ private:
     bool is_virtual_;
     PosixClock real_clock_;
     PosixPeriodicTimer real_timer_;
-    SimulatedClock virtual_clock_{MonotonicTime{1'000'000'000}}; ///< Some callers use 0 as "never".
+    /// Starts at 1 s: some callers use 0 for "never".
+    SimulatedClock virtual_clock_{MonotonicTime{1'000'000'000}};
     SimulatedPeriodicTimer virtual_timer_{virtual_clock_};
 };
 

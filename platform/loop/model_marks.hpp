@@ -13,8 +13,9 @@
 namespace tactus::hrtc
 {
 
-/// A set of models with some present property, for instance a lost host. One thread writes, any
-/// thread reads, unordered with other data; a reader may see a change for some models only.
+/// Set of the models that have a property at present, for instance a lost server. One thread
+/// writes, any thread reads. Accesses are relaxed: they order no other data, and a reader may see
+/// the changes of some models before those of others.
 class ModelMarks
 {
 public:
@@ -30,7 +31,7 @@ public:
     {
         return (words_[model / 64].load(std::memory_order_relaxed) >> model % 64 & 1U) != 0;
     }
-    /// True if `matters(model)` holds for a model of the set.
+    /// True if `matters(model)` is true for at least one model of the set.
     template <typename Matters>
     [[nodiscard]] bool any_of(const Matters& matters) const noexcept
     {

@@ -11,7 +11,8 @@ RefinementStateTap::RefinementStateTap(PagePool& pages, std::size_t most_slots) 
 {
     const std::span<const PageMeta> shown =
         pages.metas.first(std::min(pages.metas.size(), most_slots));
-    copy_.slots.assign(shown.begin(), shown.end()); // The shown part of the slots.
+    // Converts each slot to the part that viewers get.
+    copy_.slots.assign(shown.begin(), shown.end());
     copy_.slots_left_out = static_cast<std::uint32_t>(pages.metas.size() - shown.size());
 }
 
@@ -41,7 +42,7 @@ void RefinementStateTap::copy_times(const RunStatistics& statistics) noexcept
     copy_.times[kStages + 1] = copied(statistics.cpu);
 }
 
-/// Copies the objects of awake pairs, and all others in turn.
+/// Copies the next kFrontSweep object numbers in turn, and the objects of awake pairs.
 void RefinementStateTap::copy_objects(const ShownFront& shown) noexcept
 {
     const ObjectTable& objects = shown.made.objects();

@@ -19,7 +19,7 @@
 namespace tactus::hrtc
 {
 
-/// Copy of one frame's refinement state, in the controller's own numbers.
+/// Copy of one frame's refinement state. Models and objects have the controller's numbers.
 struct RefinementStateCopy
 {
     struct Object
@@ -33,7 +33,7 @@ struct RefinementStateCopy
         SafetyState state{SafetyState::reset};
         ForceOff causes{ForceOff::none};
     };
-    /// Times of all frames so far.
+    /// Statistics of one timed span (kFrontTimes) over all frames so far.
     struct Times
     {
         std::uint64_t count{0};
@@ -53,21 +53,22 @@ struct RefinementStateCopy
     StaticVector<Object, kMaxStateObjects> objects;
     StaticVector<RefinementStateRegion, kMaxStateRegions> regions; ///< Regions of highest priority.
     std::uint32_t regions_left_out{0};                             ///< Number of other regions.
-    std::vector<ShownPage> slots;                                  ///< Page slots of all models.
-    std::uint32_t slots_left_out{0}; ///< Number of slots beyond those.
+    /// First page slots of the pool.
+    std::vector<ShownPage> slots;
+    std::uint32_t slots_left_out{0}; ///< Number of slots that `slots` lacks.
 };
 
-/// One frame in a hundred, copied to show the refinement state. The copy belongs to either the
-/// haptic thread, which fills it, or the transport thread, which reads it and gives it back;
-/// neither ever waits.
+/// Copies the refinement state of at most one frame in kFrames for viewers. The copy belongs to one
+/// thread at a time: the haptic thread fills it; the transport thread reads it and gives it back.
+/// Neither ever waits.
 class RefinementStateTap
 {
 public:
     /// Least number of frames between copies.
     static constexpr std::uint64_t kFrames = 100;
 
-    /// Copies the pool's first slots, before the loop. The pool outlives the tap and has no other
-    /// tap. Allocates 16 bytes a slot.
+    /// Call it before the loop. Copies the pool's first slots, `most_slots` at most, 16 bytes each.
+    /// The pool must outlive the tap and have no other tap.
     explicit RefinementStateTap(PagePool& pages, std::size_t most_slots = kMaxStatePages);
 
     struct ShownFront
@@ -80,10 +81,10 @@ public:
         const Budgets& budgets;
     };
 
-    /// Haptic thread, after a frame. Costs one comparison in 99 frames of 100 and while the last
-    /// copy is in use. Otherwise copies 16 bytes of each page slot that has changed since and
-    /// visits awake pairs, kMaxStateRegions regions and kFrontSweep objects once, without
-    /// allocating.
+    /// Haptic thread, after a frame: makes a copy if the frame's number is a multiple of kFrames
+    /// and the last copy was given back. A copy takes 16 bytes of each page slot that has changed
+    /// since the last one. It visits the awake pairs, kMaxStateRegions regions and kFrontSweep
+    /// objects once. Allocates nothing.
     void show(const ShownFront& shown, const RunStatistics& statistics) noexcept
     {
         // Pairs with the release in give_back().
@@ -94,10 +95,11 @@ public:
         }
     }
 
-    /// Transport thread: the newest copy, until give_back(); null if there is none.
+    /// Transport thread: the copy, valid until give_back(); null if there is none.
     [[nodiscard]] const RefinementStateCopy* take() const noexcept
     {
-        return is_out_.load(std::memory_order_acquire) ? &copy_ : nullptr; // Pairs with show().
+        // Pairs with the release in show().
+        return is_out_.load(std::memory_order_acquire) ? &copy_ : nullptr;
     }
     void give_back() noexcept
     {

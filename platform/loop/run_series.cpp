@@ -22,7 +22,7 @@ template <typename Point>
 void Series<Point>::add(const Point& frame) noexcept
 {
     constexpr std::size_t kHalf = kPoints / 2;
-    if (unmerged_from_ < kHalf) // Merging ends long before the other half is full.
+    if (unmerged_from_ < kHalf) // All pairs are merged long before the free half is full.
     {
         now_[unmerged_from_] = merged(unmerged_from_);
         ++unmerged_from_;

@@ -12,11 +12,11 @@
 namespace tactus::hrtc
 {
 
-/// Maxima of some neighbouring frames.
+/// Maxima over the frames of one point.
 struct SeriesPoint
 {
     float force_n{0.0F}; ///< Largest force on a device.
-    float width_m{0.0F}; ///< Widest bounds of an open or stale answer; 0: none was.
+    float width_m{0.0F}; ///< Widest bounds of a bounded or stale answer; 0 without one.
     float frame_us{0.0F};
     std::array<float, kStages> stage_us{};
 
@@ -24,7 +24,7 @@ struct SeriesPoint
     bool operator==(const SeriesPoint&) const noexcept = default;
 };
 
-/// Position of a tool in that of some neighbouring frames with the most force.
+/// Position of a tool in the frame with the most force, among the frames of one point.
 struct PathPoint
 {
     std::array<float, 3> place_m{}; ///< Position of the proxy, in the world.
@@ -34,14 +34,15 @@ struct PathPoint
     bool operator==(const PathPoint&) const noexcept = default;
 };
 
-/// A whole run of any length as a few thousand points. Each merges `stride()` frames by
-/// take(); once all points are used, neighbours merge. Filled by the haptic thread: no allocation,
-/// and no frame merges more than one pair. Read by others once the loop has ended.
+/// Series of at most kPoints points over a run of any length. A point merges `stride()` frames by
+/// take(). When all points are used, neighbours are merged and the stride doubles. The haptic
+/// thread fills the series: no allocation, and at most one merged pair a frame. Other threads read
+/// it once the loop has ended.
 template <typename Point>
 class Series
 {
 public:
-    /// Capacity; two lists of these are 128 KiB of SeriesPoint.
+    /// Largest number of points; the two lists take 128 KiB of SeriesPoint.
     static constexpr std::size_t kPoints = 2'048;
 
     Series() : now_(kPoints), before_(kPoints) {}
@@ -57,7 +58,8 @@ private:
     [[nodiscard]] Point merged(std::size_t pair) const noexcept;
 
     std::vector<Point> now_;
-    std::vector<Point> before_;          ///< Points of half the stride.
+    /// Points of half the stride, from before the last doubling.
+    std::vector<Point> before_;
     std::size_t unmerged_from_{kPoints}; ///< First pair of `before_` that is not in `now_` yet.
     std::size_t used_{0};                ///< Points of `now_`, including unmerged ones.
     std::uint64_t in_last_{0};           ///< Frames in the last point.

@@ -11,7 +11,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Badness of an answer; a frame is as bad as its worst pair.
+/// Rank of an answer, 0 (best) to 4 (worst); a frame ranks as its worst pair.
 int badness(AnswerKind kind) noexcept
 {
     switch (kind)
@@ -68,34 +68,35 @@ void ForceCounts::add(const ToolOutput& output, const ToolForce& force) noexcept
         least_stiffness_n_per_m = std::min(least_stiffness_n_per_m, force.push.stiffness_n_per_m);
     }
     observed_energy_max_j = std::max(
-        {observed_energy_max_j, force.push.observed_energy_j, force.turn.observed_energy_j});
+        {observed_energy_max_j, force.push.observed_energy_j, force.torque.observed_energy_j});
     for (std::size_t bit = 0; bit < kForceActions; ++bit)
     {
         const auto action = static_cast<ForceAction>(1U << bit);
-        const ForceAction actions = force.push.actions | force.turn.actions;
+        const ForceAction actions = force.push.actions | force.torque.actions;
         conditioned[bit] += has_action(actions, action) ? 1U : 0U;
     }
 }
 
-/// The fade of a run and of a force damps the motion, in the air too: that is no contact force, and
-/// its start and end are no step of one.
+/// Updates the maxima of force and torque and of their steps. The fade at the run's end does not
+/// count. A fade in the air sends only damping, which is no contact force; neither it nor its end
+/// counts as a step.
 void ForceCounts::add_sent(const ToolForce& force, bool in_contact) noexcept
 {
     const bool is_damping_air = force.causes != ForceOff::none && !in_contact;
     if (!is_damping_air && !has_cause(force.causes, ForceOff::software))
     {
         max_n = std::max(max_n, force.push.force_n.norm());
-        torque_max_nm = std::max(torque_max_nm, force.turn.force_n.norm());
+        torque_max_nm = std::max(torque_max_nm, force.torque.force_n.norm());
         if (!damped_air_)
         {
             max_step_n = std::max(max_step_n, (force.push.force_n - last_n_).norm());
             torque_max_step_nm =
-                std::max(torque_max_step_nm, (force.turn.force_n - last_nm_).norm());
+                std::max(torque_max_step_nm, (force.torque.force_n - last_nm_).norm());
         }
     }
     damped_air_ = is_damping_air;
     last_n_ = force.push.force_n;
-    last_nm_ = force.turn.force_n;
+    last_nm_ = force.torque.force_n;
 }
 
 void WorkRange::add(std::uint32_t work, bool is_first) noexcept

@@ -20,7 +20,7 @@
 namespace tactus::hrtc
 {
 
-/// Counts of the answers of frames or of one pair.
+/// Counts of answers, by kind. An object of it counts the frames of a run or those of one pair.
 struct AnswerCounts
 {
     std::uint64_t exact{0};
@@ -29,7 +29,7 @@ struct AnswerCounts
     std::uint64_t stale{0};
     std::uint64_t within_tolerance{0};
     std::uint64_t longest_inexact_run{0};
-    double width_max_m{0.0};     ///< Widest bounds of a frame with a bounded or stale answer.
+    double width_max_m{0.0};     ///< Largest width U - L of a bounded or stale answer.
     double tolerated_max_m{0.0}; ///< Largest tolerated_m of an answer within the tolerance.
 
     void add(AnswerKind kind, double width_m, double tolerated_m) noexcept;
@@ -42,7 +42,7 @@ private:
     std::uint64_t inexact_run_{0};
 };
 
-/// One tool's forces over the run. The largest ones exclude the fade at its end.
+/// Forces of one tool over the run. Maxima leave out the fade at the run's end.
 struct ForceCounts
 {
     double max_n{0.0};
@@ -51,8 +51,10 @@ struct ForceCounts
     double torque_max_step_nm{0.0}; ///< Largest |T(k) - T(k - 1)|.
     double twist_max_rad{0.0};      ///< Largest angle between device and proxy, in contact.
     double fixture_max_n{0.0};      ///< Largest force of --fixture before it was limited.
-    double load_max_n{0.0};         ///< Largest force that carried a payload, not in the others.
-    double load_max_nm{0.0};        ///< Largest torque that carried a payload, not in the others.
+    /// Largest force that carried a payload; no other member includes it.
+    double load_max_n{0.0};
+    /// Largest torque that carried a payload; no other member includes it.
+    double load_max_nm{0.0};
     std::uint64_t contact_frames{0};
     std::uint64_t force_frames{0}; ///< Contact frames with a force sent.
     std::uint64_t halted_frames{0};
@@ -71,10 +73,10 @@ private:
 
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
-    bool damped_air_{false}; ///< True if air was damped in the last frame.
+    bool damped_air_{false}; ///< True if the last frame's force damped motion without contact.
 };
 
-/// Range and sum of a number of each frame over the run.
+/// Minimum, maximum and sum of a frame's work over the run.
 struct WorkRange
 {
     std::uint32_t min{0};
@@ -84,8 +86,8 @@ struct WorkRange
     void add(std::uint32_t work, bool is_first) noexcept;
 };
 
-/// Everything for a run's report. Filled by the haptic thread without allocating; read by others
-/// once the loop has ended.
+/// Statistics of a run, for its report. The haptic thread fills them without allocating; other
+/// threads read them once the loop has ended.
 class RunStatistics
 {
 public:
@@ -106,16 +108,18 @@ public:
     RunSeries series;
     std::vector<ToolPath> paths; ///< Paths, one a tool.
     DeadlineAccount deadlines;
-    AnswerCounts answers; ///< Answers, each frame by its worst pair.
+    AnswerCounts answers; ///< Answers of the frames; a frame counts by its worst pair.
     std::size_t objects;  ///< Capacity for objects: one more than their largest number.
-    /// Answers by tool, then object number; counted while they are near.
+    /// Answers of each pair, at index tool x `objects` + object number. A pair is counted in frames
+    /// with its PairOutput.
     std::vector<AnswerCounts> pairs;
     std::vector<ForceCounts> tools;
     std::vector<ModelOutput> models; ///< Models of the last frame; `used_max` covers the run.
 
-    std::uint64_t contact_frames{0}; ///< Frames with some tool in contact.
-    std::uint64_t force_frames{0};   ///< Contact frames in which a tool in contact sent a force.
-    std::uint64_t data_limited_frames{0}; ///< Frames with some tool data-limited.
+    std::uint64_t contact_frames{0}; ///< Frames with at least one tool in contact.
+    /// Contact frames in which a tool in contact sent a force above 0.
+    std::uint64_t force_frames{0};
+    std::uint64_t data_limited_frames{0}; ///< Frames with at least one data-limited tool.
     std::uint64_t splits{0};
     std::uint64_t merges{0};
     std::uint64_t nodes_visited{0};
@@ -123,18 +127,20 @@ public:
     std::uint64_t cache_hits{0};
     std::uint64_t cache_misses{0};
     std::uint64_t evictions{0};
-    std::array<std::uint64_t, kSkips> skipped{}; ///< Skipped stages, in the order of Skip.
-    std::array<std::uint64_t, 32> faults{};      ///< Frames with each FrameFault bit.
+    /// Number of skips of each kind, in the order of Skip.
+    std::array<std::uint64_t, kSkips> skipped{};
+    std::array<std::uint64_t, 32> faults{}; ///< Frames with each FrameFault bit.
 
     std::uint32_t objects_now{0}; ///< Objects in the last frame.
     std::uint32_t objects_max{0};
     std::uint32_t pairs_awake_max{0};
-    /// Frames with some tool whose clearance is less than requested.
+    /// Frames with a tool that is not proven clear of objects without a pair as far as it requests.
     std::uint64_t capacity_exceeded_frames{0};
-    /// Frames with one of them held at its proven clearance.
+    /// Frames with a tool held at an invisible wall: at its proven clearance, or at the box of a
+    /// model that is not resident.
     std::uint64_t invisible_wall_frames{0};
-    std::uint64_t shed_pairs{0};  ///< Pairs dropped, summed over the frames.
-    std::uint64_t scene_walks{0}; ///< Walks of BroadPhase.
+    std::uint64_t shed_pairs{0};  ///< Pairs shed (PairOutput::is_shed), summed over the frames.
+    std::uint64_t scene_walks{0}; ///< Walks of BroadPhase over all objects.
     /// Changes refused, in the order of ChangeRefusal.
     std::array<std::uint64_t, kChangeRefusals> changes_refused{};
 
@@ -143,7 +149,7 @@ public:
     std::uint64_t work_at_floor{0}; ///< Frames in which even the least work did not fit.
 
 private:
-    /// Returns the width of the widest bounded answer, in m.
+    /// Adds the frame's answers. Returns the width in metres of the widest bounded or stale one.
     double add_answers(const FrameOutput& output) noexcept;
     void add_point(const CycleMeasures& measures, std::span<const ToolForce> forces,
                    double width_m) noexcept;

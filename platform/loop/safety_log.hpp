@@ -15,7 +15,7 @@
 namespace tactus::hrtc
 {
 
-/// A change of a tool's state or causes.
+/// Change of a tool's safety state, or of the causes of its fade.
 struct SafetyEvent
 {
     MonotonicTime time;
@@ -23,19 +23,19 @@ struct SafetyEvent
     std::uint32_t tool{0};
     SafetyState state{SafetyState::reset};
     ForceOff causes{ForceOff::none};
-    bool by_supervisor{false}; ///< True if noted by the supervisor, which has braked the device.
+    bool by_supervisor{false}; ///< True for a brake by the supervisor; `frame` is then 0.
 };
 
 /// Passes events from one real-time thread to one other thread in a queue of fixed size. Events
-/// beyond it are counted and dropped.
+/// that find the queue full are dropped and counted.
 class SafetyLog
 {
 public:
-    /// Capacity, 32 KiB. Events are taken every 20 ms; even at 10 kHz and with a change in every
-    /// frame four tools need fewer.
+    /// Capacity of the queue, 32 KiB. Events are taken every 20 ms; even at 10 kHz and with a
+    /// change in every frame four tools need less.
     static constexpr std::size_t kEvents = 1'024;
 
-    /// Thread of the events. Allocates nothing.
+    /// Real-time thread: queues the event. Allocates nothing.
     void note(const SafetyEvent& event) noexcept
     {
         if (!queue_.try_push(event))
@@ -44,7 +44,7 @@ public:
         }
     }
 
-    /// Other thread: appends the waiting events to `events`.
+    /// Other thread: moves the waiting events to the end of `events`.
     void take_into(std::vector<SafetyEvent>& events)
     {
         SafetyEvent event;

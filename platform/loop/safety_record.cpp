@@ -9,7 +9,7 @@ namespace tactus::hrtc
 
 void SafetyRecord::add(const SafetyEvent& event)
 {
-    // The loop notes the supervisor's effects as well, once it runs again.
+    // The supervisor's events are not counted: the loop notes their causes once it runs again.
     if (!event.by_supervisor)
     {
         ForceOff& last = last_causes_[event.tool];

@@ -25,14 +25,14 @@ constexpr std::uint64_t bit_of(std::size_t object) noexcept
     return std::uint64_t{1} << object % kWordBits;
 }
 
-/// Object of a word's lowest bit.
+/// Number of the object of the lowest set bit in `bits`, the word of that index.
 constexpr std::size_t first_of(std::size_t word, std::uint64_t bits) noexcept
 {
     return word * kWordBits + static_cast<std::size_t>(std::countr_zero(bits));
 }
 
-/// Time between two times of a host's clock, up to a day; otherwise 0, since a host's times are not
-/// trusted.
+/// Time between two stamps of a server's clock; 0 unless it is positive and at most a day, since a
+/// server's stamps are not trusted.
 std::int64_t since_ns(std::int64_t before_ns, std::int64_t now_ns) noexcept
 {
     constexpr std::int64_t kDay_ns = 86'400'000'000'000;
@@ -177,8 +177,8 @@ std::span<const SceneChange> SceneMailbox::refresh(MonotonicTime now,
     std::size_t changes = take_scene_events();
     take_samples(now);
     look_at_ages(now);
-    // Objects near tools have their turn in every frame, or the surface would jump under the tool;
-    // they leave half of the changes to others.
+    // Objects near tools move in every frame; otherwise the surface would jump under the tool. They
+    // take at most half of the changes.
     const std::size_t passed = changes;
     for (const ObjectTouch& touch : touches)
     {
@@ -187,12 +187,13 @@ std::span<const SceneChange> SceneMailbox::refresh(MonotonicTime now,
         if (has_room && (bits & bit_of(touch.object)) != 0)
         {
             changes += try_move(touch.object, now, changes_[changes]) ? 1U : 0U;
-            bits &= ~bit_of(touch.object); // This object has had its turn.
+            // Hidden from the visit of all objects below; set again after it if the object moved.
+            bits &= ~bit_of(touch.object);
         }
     }
     const std::size_t touched = changes;
-    // Visits all objects once from `first_` on: the later bits of its word first, the earlier ones
-    // last.
+    // Visits each awake object once, from `first_` on. The word of `first_` comes first with its
+    // later bits and last with its earlier ones.
     const std::size_t words = awake_.size();
     const std::uint64_t from_first = ~std::uint64_t{0} << first_ % kWordBits;
     std::size_t next = first_;
@@ -265,7 +266,7 @@ void SceneMailbox::take_samples(MonotonicTime now) noexcept
 void SceneMailbox::look_at_ages(MonotonicTime now) noexcept
 {
     const std::size_t objects = samples_.size();
-    // Frames until each object has its next turn.
+    // Number of frames in which each object's age is checked once.
     const std::size_t frames = (objects + kAgedAFrame - 1) / kAgedAFrame;
     for (std::size_t i = 0; i < std::min(objects, kAgedAFrame); ++i)
     {
@@ -286,7 +287,7 @@ void SceneMailbox::look_at_ages(MonotonicTime now) noexcept
     }
 }
 
-/// Returns true, with the change, if the frame needs a change of the object.
+/// Returns true and sets `change` if the frame needs a move of the object or news of its server.
 bool SceneMailbox::try_move(std::size_t object, MonotonicTime now, SceneChange& change) noexcept
 {
     const Duration age = age_of(object, now);
@@ -312,8 +313,8 @@ bool SceneMailbox::try_move(std::size_t object, MonotonicTime now, SceneChange& 
     return true;
 }
 
-/// Takes added, removed and changed objects before the moves; returns their number of changes. More
-/// are deferred to the next frame.
+/// Takes at most kTakenAFrame queue entries and puts their changes first. Returns their number;
+/// other entries stay queued.
 std::size_t SceneMailbox::take_scene_events() noexcept
 {
     std::size_t changes = 0;
@@ -354,14 +355,14 @@ void SceneMailbox::begin_blend(std::size_t object, const PoseSample& sample,
     Blend& blend = blends_[object];
     blend.from = places_[object];
     blend.to = Similarity{pose_of(sample)};
-    // If the frame has not been given a pose that was to be taken at once, this one is taken at
-    // once.
+    // True if the frame has not been given the last pose, which was to be taken at once. This pose
+    // is then taken at once.
     const bool is_overdue = blend.is_under_way && blend.time == Duration{0};
     if (!blend.is_under_way)
     {
         blend.moved = last_refresh_;
     }
-    const MonotonicTime start = std::min(blend.moved, now); // The object was due there then.
+    const MonotonicTime start = std::min(blend.moved, now); // Time for which the frame has `from`.
     const Duration left = blend.is_under_way ? blend.time - (start - blend.start) : Duration{0};
     blend.start = start;
     blend.is_under_way = true;
@@ -371,8 +372,8 @@ void SceneMailbox::begin_blend(std::size_t object, const PoseSample& sample,
     const bool rested = between_ns <= 0 || between_ns > kBlendMax.ns;
     const double way_m = (blend.to.translation_m - blend.from.translation_m).norm();
     const bool is_at_once = !uses_[object].is_followed || is_overdue || (rested && way_m > kJump_m);
-    // If a pose is early, the blend before is not finished: adding its remaining time keeps the
-    // speed. A fifth of that time is dropped, so that one late pose causes no lasting lag.
+    // If a pose is early, the last blend is unfinished: adding its remaining time keeps the speed.
+    // A fifth of that time is dropped, so that one late pose causes no lasting lag.
     const std::int64_t whole_ns = between_ns + std::max<std::int64_t>(left.ns, 0) * 4 / 5;
     blend.time = is_at_once ? Duration{0}
                  : rested   ? kBlendMax
@@ -380,7 +381,7 @@ void SceneMailbox::begin_blend(std::size_t object, const PoseSample& sample,
     uses_[object].is_followed = true;
 }
 
-/// Moves an object in motion by one frame.
+/// Moves an object of an unfinished blend to its place at `now`, within the object speed limit.
 void SceneMailbox::move_on(std::size_t object, MonotonicTime now) noexcept
 {
     Blend& blend = blends_[object];
@@ -405,7 +406,8 @@ void SceneMailbox::move_on(std::size_t object, MonotonicTime now) noexcept
     blend.is_under_way = blend.is_held || now - blend.start < blend.time;
 }
 
-/// Largest displacement of the parts of the object that a tool may meet; 0 if no tool is near.
+/// Largest displacement, from the present place to `to`, of the object's points that a tool may
+/// meet; 0 if no tool is near.
 double SceneMailbox::way_near_m(std::size_t object, const Similarity& to) const noexcept
 {
     double way_m = 0.0;
@@ -434,7 +436,7 @@ Similarity SceneMailbox::place_at(const Blend& blend, MonotonicTime now) noexcep
 
 Duration SceneMailbox::age_of(std::size_t object, MonotonicTime now) const noexcept
 {
-    // A host may have been heard since the frame began; its age is 0.
+    // If the server was heard after the frame began, the age is 0.
     const std::int64_t heard_ns = heard_ns_[object].load(std::memory_order_relaxed);
     return {std::max<std::int64_t>(now.ns - heard_ns, 0)};
 }

@@ -26,35 +26,36 @@ namespace tactus
 /// Use of one object's poses over a run.
 struct PoseUse
 {
-    bool is_followed{false}; ///< True once a pose has arrived; its age counts from then on.
+    bool is_followed{false}; ///< True once a pose has arrived; the age counts from then on.
     std::uint64_t moves{0};  ///< Frames whose pose differs from the frame before.
-    Duration age_max{};      ///< Longest silence of its host in a frame.
+    Duration age_max{};      ///< Longest time since the server was last heard, over all frames.
     double step_max_m{0.0};  ///< Largest displacement of the object's origin between two frames.
-    std::uint64_t old_frames{0}; ///< Frames in which the silence exceeded the limit.
-    /// Frames with a tool near in which its poses exceeded the object speed limit.
+    std::uint64_t old_frames{0}; ///< Frames with an age above the age limit.
+    /// Frames in which a tool was near and the server's poses exceeded the object speed limit.
     std::uint64_t rate_limited_frames{0};
 };
 
-/// Passes the newest pose of each object from the transport thread to the haptic thread, and also
-/// added and removed objects and changed materials. Neither thread waits for the other; a pose that
-/// is not read in time is overwritten. The haptic thread gets all as changes of the scene.
+/// Passes changes of the scene from the transport thread to the haptic thread: the newest pose of
+/// each object, added and removed objects, and changed materials. Neither thread waits for the
+/// other; a pose that is not read in time is overwritten.
 ///
-/// An object's motion is blended from its place to its newest pose. That takes the time between
-/// that pose and the one before on the host's clock plus most of the time left of the last blend,
-/// at most kBlendMax. Contacts therefore see small steps even if poses are early or late. Nothing
-/// is extrapolated. After a rest, a pose farther away than kJump_m is taken at once, as it is no
-/// motion.
+/// An object moves from its present place to its newest pose in a blend. The blend lasts as long as
+/// the server's time between the last two poses, plus four fifths of the last blend's remaining
+/// time, at most kBlendMax. Contacts therefore see small steps even if poses are early or late.
+/// Nothing is extrapolated. If the last two poses are more than kBlendMax apart in time and the new
+/// one is farther away than kJump_m, the object takes it at once.
 ///
-/// If a tool touches an object, or may soon, no point of it that the tool may meet exceeds the
-/// object speed limit (ObjectSpeedLimit). The object catches up later. A pose taken at once is not
-/// limited, even if it exceeds the speed.
+/// If a tool touches an object or may touch it soon, the blend is limited: no point of the object
+/// that the tool may meet exceeds the object speed limit (ObjectSpeedLimit). The object catches up
+/// later. A pose taken at once is limited only if the object can catch up within
+/// ObjectSpeedLimit::kPatience_s.
 ///
-/// An object's age is the time since its host was last heard, on this machine's clock. An object at
-/// rest needs no poses, and costs no changes while its host is heard. Until its first pose an
+/// An object's age is the time since its server was last heard, on this machine's clock. An object
+/// at rest needs no poses, and costs no changes while its server is heard. Until its first pose an
 /// object stays where it was placed, and does not age.
 ///
-/// Objects at rest cost almost nothing: new poses are found by one bit each, and kAgedAFrame
-/// objects a frame have their ages checked in turn.
+/// Objects at rest cost almost nothing: one bit an object marks a new pose, and a frame checks the
+/// ages of kAgedAFrame objects in turn.
 class SceneMailbox
 {
 public:
@@ -62,14 +63,14 @@ public:
     static constexpr double kJump_m = 0.02;
     /// Number of objects whose age a frame checks; 4,096 objects take 16 frames.
     static constexpr std::size_t kAgedAFrame = 256;
-    /// Largest number of added and removed objects and changed materials in the queue.
+    /// Capacity of the queue of added and removed objects and changed materials.
     static constexpr std::size_t kWaiting = 512;
-    /// Largest number of those that a frame takes. Its other changes are moves.
+    /// Largest number of queue entries that a frame takes. The frame's other changes are moves.
     static constexpr std::size_t kTakenAFrame = kMaxSceneChanges / 2;
 
-    /// `placed`: objects numbered in this order, of generation 0, at their start poses. `objects`:
-    /// capacity, 0.8 KiB each. `age_limit`: frames above it are counted; the frame has the same
-    /// limit. `speed_max_m_per_s`: speed limit of an object near a tool; above 0.
+    /// `placed`: start poses of the objects of generation 0, numbered in this order. `objects`:
+    /// capacity, 0.8 KiB each. `age_limit`: must equal the frame's own limit; PoseUse counts frames
+    /// above it. `speed_max_m_per_s`: speed limit of an object near a tool; above 0.
     SceneMailbox(std::span<const ObjectPose> placed, std::size_t objects, Duration age_limit,
                  double speed_max_m_per_s = kInfinity);
     SceneMailbox(std::span<const ObjectPose> placed, Duration age_limit)
@@ -77,44 +78,45 @@ public:
     {
     }
 
-    /// Transport thread: adds an object under a free number, with a generation above that of its
-    /// last object. Its host was heard. False if the queue is full.
+    /// Transport thread: queues a new object under a free number. `generation` must exceed that of
+    /// the number's last object. Also calls hear(). False if the queue is full.
     [[nodiscard]] bool try_come(std::size_t object, std::uint32_t generation,
                                 const ObjectSpec& spec, const ObjectPose& pose,
                                 MonotonicTime arrival) noexcept;
-    /// Transport thread: removes the object of that number. False if the queue is full.
+    /// Transport thread: queues the removal of the object of that number. False if the queue is
+    /// full.
     [[nodiscard]] bool try_go(std::size_t object) noexcept;
-    /// Transport thread: gives the object another material. False if the queue is full.
+    /// Transport thread: queues another material for the object. False if the queue is full.
     [[nodiscard]] bool try_feel(std::size_t object, const Material& material) noexcept;
 
-    /// Transport thread: passes a pose of an existing object; its host was heard, too. `arrival`:
-    /// on the clock of refresh().
+    /// Transport thread: passes a pose of an existing object, and calls hear(). `arrival`: on the
+    /// clock of refresh().
     void put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept;
-    /// The transport thread: the object's host was heard.
+    /// Transport thread: notes that the object's server was heard at `now`.
     void hear(std::size_t object, MonotonicTime now) noexcept;
 
-    /// Haptic thread, at the start of a frame: the moves, and the objects whose host fell silent or
-    /// was heard again; at most kMaxSceneChanges. More are deferred to the next frame, which begins
-    /// with them; up to half of them are for objects near tools, in every frame and in the order of
-    /// `touches`. `touches`: result of list_touches() after the last frame, at most kMaxPairs. The
-    /// result is valid until the next call. Allocates nothing; 0.1 us an object in motion, 0.6 us
-    /// for all at rest.
+    /// Haptic thread, at the start of a frame: returns the changes of the scene, at most
+    /// kMaxSceneChanges, valid until the next call. They also tell the frame which objects' servers
+    /// fell silent or were heard again. Changes without room wait for the next frame, which begins
+    /// with them. Objects near tools come first in every frame, in the order of `touches`, with at
+    /// most half of the changes. `touches`: result of list_touches() after the last frame, at most
+    /// kMaxPairs. Allocates nothing; 0.1 us an object in motion, 0.6 us for all at rest.
     [[nodiscard]] std::span<const SceneChange>
     refresh(MonotonicTime now, std::span<const ObjectTouch> touches = {}) noexcept;
 
-    /// Haptic thread: true if this object, near a tool in the last refresh(), was moved above the
-    /// object speed limit for longer than ObjectSpeedLimit::kPatience_s.
+    /// Haptic thread: true if this object, near a tool in the last refresh(), lags its server's
+    /// pose by more than the object speed limit allows in ObjectSpeedLimit::kPatience_s.
     [[nodiscard]] bool exceeds_limit(std::size_t object) const noexcept
     {
         return blends_[object].exceeds_limit;
     }
     [[nodiscard]] const ObjectSpeedLimit& belief() const noexcept { return speed_limit_; }
 
-    /// Uses, one an object. Haptic thread, or others once it has ended.
+    /// Uses of poses, one an object. Haptic thread, or any other once the haptic one has ended.
     [[nodiscard]] std::span<const PoseUse> uses() const noexcept { return uses_; }
 
 private:
-    /// A pose in plain numbers, since a mailbox needs a trivially copyable type.
+    /// Pose in plain numbers, since a mailbox needs a trivially copyable type.
     struct PoseSample
     {
         std::array<double, 9> rotation{}; ///< Rotation, row by row.
@@ -127,7 +129,7 @@ private:
         std::uint64_t number{0}; ///< Number of the pose for this object, from 1.
     };
 
-    /// An object that is added, removed or gets another material, trivially copyable.
+    /// Queue entry: an object is added, removed or gets another material. Trivially copyable.
     struct SceneEvent
     {
         SceneChangeKind kind{SceneChangeKind::object_goes};
@@ -143,15 +145,16 @@ private:
         Similarity from;
         Similarity to;
         MonotonicTime start;
-        /// Time of the last place given to the frame, or of the start of the motion.
+        /// Time of the last place given to the frame, or of the refresh() before the motion.
         MonotonicTime moved;
         Duration time{}; ///< Duration of the blend; 0: `to` is taken at once.
         bool is_resident{false};
         bool is_under_way{false};
-        /// True if the frame has been given the time its host was last heard.
+        /// True if the object's last change told the frame that its server is silent.
         bool is_told_old{false};
-        bool is_near{false};       ///< True if a tool touches it or may soon; during refresh().
-        bool is_held{false};       ///< True if the object lags its blend, since a tool is near.
+        bool is_near{false}; ///< True during refresh() if `touches` has the object.
+        /// True if the object speed limit holds the object behind its blend.
+        bool is_held{false};
         bool exceeds_limit{false}; ///< Result of exceeds_limit().
     };
 
@@ -168,31 +171,35 @@ private:
     [[nodiscard]] double way_near_m(std::size_t object, const Similarity& to) const noexcept;
     [[nodiscard]] static Similarity place_at(const Blend& blend, MonotonicTime now) noexcept;
     [[nodiscard]] Duration age_of(std::size_t object, MonotonicTime now) const noexcept;
-    /// True at half the limit, so that the frame reaches the limit at the right time.
+    /// True above half the age limit. The frame then has the time when the server was last heard
+    /// before the age limit passes.
     [[nodiscard]] bool is_silent(Duration age) const noexcept { return age.ns > age_limit_.ns / 2; }
     void move_to(std::size_t object, const Similarity& place) noexcept;
 
     Duration age_limit_;
     ObjectSpeedLimit speed_limit_;
-    std::span<const ObjectTouch> touches_; ///< Touches during refresh().
-    std::vector<Similarity> places_;       ///< Places as the frame has them.
+    std::span<const ObjectTouch> touches_; ///< `touches` of refresh(), valid while it runs.
+    std::vector<Similarity> places_;       ///< Places of the objects in the frame.
     std::vector<PoseSample> samples_;      ///< Last sample read, one an object.
     std::vector<Blend> blends_;
     std::vector<PoseUse> uses_;
-    std::vector<std::uint64_t> unread_; ///< One bit an object: an unread sample.
-    std::vector<std::uint64_t> awake_;  ///< One bit an object: the frame may need a change of it.
+    /// One bit an object: set if its mailbox has an unread sample.
+    std::vector<std::uint64_t> unread_;
+    /// One bit an object: set if the frame may need a change of it.
+    std::vector<std::uint64_t> awake_;
     MonotonicTime last_refresh_{};
-    std::size_t first_{0};     ///< Object whose turn is first in the next frame.
-    std::size_t next_aged_{0}; ///< Object whose age is checked first.
+    std::size_t first_{0};     ///< Object whose move comes first in the next frame.
+    std::size_t next_aged_{0}; ///< Object whose age the next frame checks first.
     std::array<SceneChange, kMaxSceneChanges> changes_{};
-    std::vector<std::uint64_t> numbers_;     ///< Last pose put; the transport thread's.
-    std::vector<std::uint32_t> generations_; ///< Generation of the object; the transport thread's.
+    /// Number of each object's last pose; transport thread only.
+    std::vector<std::uint64_t> numbers_;
+    std::vector<std::uint32_t> generations_; ///< Generation of each object; transport thread only.
     std::vector<SceneEvent> scene_event_slots_;
     SpscQueue<SceneEvent> scene_events_;
     // NOLINTBEGIN(*-avoid-c-arrays): they don't move.
     std::unique_ptr<Mailbox<PoseSample>[]> mailboxes_;
     std::unique_ptr<std::atomic<std::int64_t>[]> heard_ns_; ///< Relaxed: it orders nothing else.
-    /// One bit an object: a pose was put since.
+    /// One bit an object: put() sets it, take_samples() clears it.
     std::unique_ptr<std::atomic<std::uint64_t>[]> came_;
     // NOLINTEND(*-avoid-c-arrays)
 };

@@ -16,7 +16,7 @@ void Supervisor::run() noexcept
         const Duration until = look() - parts_.clock->now();
         const Duration sleep =
             std::clamp(until, PeriodicTimer::kPeriodMin, PeriodicTimer::kPeriodMax);
-        // It is in range, so it is not refused.
+        // start() refuses only periods out of range.
         static_cast<void>(parts_.timer->start(sleep, Duration{}));
         parts_.timer->sleep_until_margin();
     }
@@ -26,7 +26,7 @@ MonotonicTime Supervisor::look() noexcept
 {
     const Duration patience = parts_.period * parts_.silent_periods;
     const std::optional<MonotonicTime> last = parts_.heartbeat->last();
-    // It is read after the beat, so it is never earlier.
+    // The clock is read after the beat, so `now` is no earlier than the beat.
     const MonotonicTime now = parts_.clock->now();
     if (!last)
     {
@@ -44,7 +44,7 @@ MonotonicTime Supervisor::look() noexcept
     }
     else if (now - noticed_at_ >= kBrakeFade)
     {
-        brake(); // It also covers a device whose own thread, which fades, did not run.
+        brake(); // This also stops a device whose own thread did not run the fade.
     }
     return now + parts_.period;
 }

@@ -17,29 +17,29 @@
 namespace tactus::hrtc
 {
 
-/// Parts of the supervisor. All outlive it.
+/// Parts of the supervisor. All must outlive the supervisor.
 struct SupervisorParts
 {
     std::span<const ToolSetup> tools; ///< Tools whose devices it brakes.
     const Heartbeat* heartbeat{nullptr};
     const Clock* clock{nullptr};   ///< Clock of the heartbeat's times.
-    PeriodicTimer* timer{nullptr}; ///< Timer of its own, used as an alarm.
+    PeriodicTimer* timer{nullptr}; ///< Alarm of the supervisor; no other user.
     Duration period;               ///< Period of the watched loop.
-    /// Number of periods without a beat until it brakes, at least 1.
+    /// Number of periods without a heartbeat after which the supervisor brakes, at least 1.
     std::uint32_t silent_periods{3};
 };
 
-/// Brakes all devices if the haptic loop has no beat for `silent_periods` (here 3): because of the
-/// device's own read, an endless loop, or a processor taken by another thread.
+/// Brakes all devices if the haptic loop has no beat for `silent_periods` (3 in the picture).
+/// Reasons are a device whose read blocks, an endless loop, or a processor taken by another thread.
 ///
 ///     beat    beat    beat                              beat
 ///      |-------|-------|-------.-------.-------|  . . .  |
 ///                                   brake_softly()        the loop releases it and continues from
 ///                                                         the rest of the force, or from zero
 ///
-/// After the fade it calls brake(), in case that a device's own thread hangs, too. It sleeps until
-/// the silence would be long enough, so it costs one wake-up in that time. Only the loop releases
-/// the brake, once it runs again.
+/// After the fade the supervisor calls brake(), in case that a device's own thread hangs, too.
+/// Between checks it sleeps until the silence would be long enough, so it wakes once in that time.
+/// Only the loop releases the brake, once it runs again.
 class Supervisor
 {
 public:
@@ -48,24 +48,25 @@ public:
     /// Checks and sleeps in turn until stop(). Allocates nothing.
     void run() noexcept;
 
-    /// Checks once: brakes if the silence is long enough and new. Returns the time of the next
-    /// check.
+    /// Checks once, and brakes softly if the loop is silent for long enough. At a later check in
+    /// the same silence, kBrakeFade or more afterwards, it brakes at once. Returns the time of the
+    /// next check.
     [[nodiscard]] MonotonicTime look() noexcept;
 
-    /// Any thread: ends run() within the permitted silence.
+    /// Any thread: ends run() within `silent_periods` periods.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
 
-    /// Any thread: number of silences ended with the brake.
+    /// Any thread: number of silences for which the devices were braked.
     [[nodiscard]] std::uint64_t brakes() const noexcept
     {
         return brakes_.load(std::memory_order_relaxed);
     }
-    /// Events, one for each device and brake.
+    /// Log with one event for each device and brake.
     [[nodiscard]] SafetyLog& log() noexcept { return log_; }
 
-    /// Options of its thread beside a loop with these options: one priority above, on another
-    /// processor than the loop's if there is one, and without real-time rights if the loop has
-    /// none.
+    /// Options of the supervisor's thread, from those of the loop's: priority one above, and
+    /// another processor if the loop has one of its own. It may run without real-time rights if the
+    /// loop may.
     [[nodiscard]] static RtThreadOptions thread_beside(const RtThreadOptions& loop);
 
 private:
@@ -73,8 +74,9 @@ private:
     void brake_softly(MonotonicTime now) noexcept;
 
     SupervisorParts parts_;
-    std::optional<MonotonicTime> noticed_; ///< Last beat before a silence that was ended.
-    MonotonicTime noticed_at_;             ///< Time when that silence was noticed.
+    /// Last beat before the silence that last caused a brake.
+    std::optional<MonotonicTime> noticed_;
+    MonotonicTime noticed_at_; ///< Time when the devices were braked for that silence.
     SafetyLog log_;
     std::atomic<bool> stopped_{false};     ///< Relaxed: it orders nothing else.
     std::atomic<std::uint64_t> brakes_{0}; ///< Relaxed: for display only.

@@ -21,12 +21,12 @@ struct ShownFrame
 {
     MonotonicTime start;
     std::span<const ToolState> tools;
-    std::span<const DeviceRecord> devices; ///< Records, one a tool.
-    std::span<const double> radii_m;       ///< Radii, one a tool.
+    std::span<const DeviceRecord> devices; ///< Device records, one a tool.
+    std::span<const double> radii_m;       ///< Tool radii, one a tool.
     const FrameOutput& output;
 };
 
-/// Shows every frame through a mailbox: the haptic thread never waits for readers.
+/// Passes every frame's telemetry through a mailbox; the haptic thread never waits for readers.
 class TelemetryTap
 {
 public:
@@ -36,9 +36,9 @@ public:
     /// about 0.6 us, and 0.2 us for each tool that touches several objects.
     void show(const ShownFrame& frame, const RunStatistics& statistics) noexcept;
 
-    /// Any thread: reads the newest frame; before the first one returns false and leaves
-    /// `telemetry` unchanged. Fields that only the transport knows (hosts, poses, chunks) are zero,
-    /// objects have the controller's numbers.
+    /// Any thread: copies the newest frame into `telemetry`. Before the first frame returns false
+    /// and leaves `telemetry` unchanged. Fields that only the transport thread knows (servers,
+    /// poses, chunks) are zero; objects have the controller's numbers.
     [[nodiscard]] bool try_read(Telemetry& telemetry) const noexcept
     {
         return mailbox_.try_read(telemetry);
@@ -47,7 +47,7 @@ public:
 private:
     void show_pairs(const ShownFrame& frame) noexcept;
 
-    Telemetry news_; ///< Newest telemetry; the haptic thread's.
+    Telemetry news_; ///< Newest telemetry; haptic thread only.
     Mailbox<Telemetry> mailbox_;
 };
 

@@ -48,32 +48,32 @@ const ToolState& ToolPort::read(std::uint32_t periods) noexcept
         sample_.rotation_world || !device_.info().limits.rotation.is_measured;
     const Quaternion rotation = sample_.rotation_world.value_or(kUnturned);
     const bool is_rotation_sound = is_unit(rotation, kRotationTolerance);
-    hand_.position_m = to_vec3(sample_.position_world_m);
+    pose_.position_m = to_vec3(sample_.position_world_m);
     state_.sample_time_ns = sample_.time.ns;
     state_.elapsed_periods = periods;
     state_.valid = sample_.valid && sample_.connected && is_turn_known && is_rotation_sound;
-    // A device without a finite position contributes neither pose nor button.
-    if (state_.valid && hand_.position_m.allFinite())
+    // Without a finite position, neither the device's pose nor its buttons are used.
+    if (state_.valid && pose_.position_m.allFinite())
     {
-        hand_.rotation = orthonormalised(to_rotation(rotation));
-        const DevicePose tool = clutch_.tool_at(hand_, sample_.buttons);
+        pose_.rotation = orthonormalised(to_rotation(rotation));
+        const DevicePose tool = clutch_.tool_at(pose_, sample_.buttons);
         state_.position_m = tool.position_m;
         state_.rotation = tool.rotation;
     }
     else
     {
-        state_.position_m = hand_.position_m;
+        state_.position_m = pose_.position_m;
     }
     look();
     return state_;
 }
 
-/// Records the device's data beside the ToolState.
+/// Copies the sample's data that the ToolState lacks into record_.
 void ToolPort::look() noexcept
 {
     record_.connected = sample_.connected;
     record_.deadman_held = sample_.deadman_held;
-    record_.hand = clutch_.has_parted() ? std::optional(hand_) : std::nullopt;
+    record_.pose = clutch_.has_parted() ? std::optional(pose_) : std::nullopt;
     record_.velocity_m_per_s = vector(sample_.velocity_world_m_per_s);
     record_.angular_velocity_rad_per_s = vector(sample_.angular_velocity_world_rad_per_s);
     record_.buttons = sample_.buttons;
@@ -88,7 +88,7 @@ const ToolForce& ToolPort::make_safe(const ToolOutput& output, PeriodContext con
     const ToolForce& force =
         pipeline_.step(state_, output, record_, external_force(output), context);
     record_.sent_n = force.push.force_n;
-    record_.sent_nm = force.turn.force_n;
+    record_.sent_nm = force.torque.force_n;
     record_.sent_gripper_n = force.gripper_n;
     return force;
 }
@@ -99,8 +99,8 @@ ExternalForce ToolPort::external_force(const ToolOutput& output) noexcept
                                        : ExternalForce{};
 }
 
-/// Returns the fraction of the last force that the device still renders: less than 1 if another
-/// thread braked it, 0 if its own watchdog ended the force.
+/// Returns the share of the last force that the device still renders: 1, or less after a brake by
+/// another thread, or 0 if the device's own watchdog ended the force. Releases the brake.
 double ToolPort::take_back() noexcept
 {
     static_assert(to_seconds(kBrakeFade) == kFadeTime_s);
@@ -118,7 +118,8 @@ double ToolPort::take_back() noexcept
     return 1.0;
 }
 
-/// Another thread may call brake() between the check and the release, so the flag is checked again.
+/// Releases the device's brake unless brake() was called. Another thread may call brake() between
+/// check and release, so the flag is checked again.
 void ToolPort::release_brake() noexcept
 {
     if (is_braked_for_good_.load())
@@ -141,7 +142,7 @@ void ToolPort::brake() noexcept
 void ToolPort::send(const ToolForce& force) noexcept
 {
     device_.write({to_array(force.push.force_n + force.load_n),
-                   to_array(force.turn.force_n + force.load_nm), force.gripper_n});
+                   to_array(force.torque.force_n + force.load_nm), force.gripper_n});
 }
 
 } // namespace tactus::hrtc

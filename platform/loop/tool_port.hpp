@@ -18,7 +18,8 @@
 namespace tactus::hrtc
 {
 
-/// External force that a program adds to the contact forces of one tool. It passes the same stages.
+/// Source of an external force, which a program adds to the contact forces of one tool. The sum
+/// passes all stages of ForcePipeline.
 class ExternalForceSource
 {
 public:
@@ -34,14 +35,14 @@ protected:
     ExternalForceSource& operator=(const ExternalForceSource&) = default;
 };
 
-/// Setup of one tool before the loop starts.
+/// Setup of one tool, complete before the loop starts.
 struct ToolSetup
 {
     ToolSpec spec;       ///< Tool of the frame.
     std::string shape;   ///< Shape as given by --tool.
     std::string fixture; ///< Virtual fixture as given by --fixture; empty: none.
-    /// Distance from surfaces at which a simulated operator holds it.
-    double hand_radius_m{0.0};
+    /// Distance of the tool's origin from a surface that a simulated operator touches.
+    double operator_radius_m{0.0};
     std::unique_ptr<HapticDevice> device;
     SafetyLimits limits;
     ConditionerSetup conditioner;
@@ -64,20 +65,22 @@ public:
     /// `setup` outlives the port.
     explicit ToolPort(const ToolSetup& setup) noexcept;
 
-    /// Reads the device. `periods`: whole periods since the last frame.
+    /// Reads the device and returns the tool's state. `periods`: whole periods since the last
+    /// frame.
     [[nodiscard]] const ToolState& read(std::uint32_t periods) noexcept;
 
-    /// Determines the force to send. Releases the device's brake if another thread has braked it,
-    /// unless brake() was called on this port. `context.force_left` is determined here.
+    /// Determines the force to send, valid until the next call. Releases the device's brake if
+    /// another thread has braked the device, unless brake() was called on this port. Overwrites
+    /// `context.force_left`.
     const ToolForce& make_safe(const ToolOutput& output, PeriodContext context) noexcept;
 
     /// Sends the force that make_safe() has returned.
     void write() noexcept { send(pipeline_.force()); }
 
-    /// Record of the data exchanged with the device in this period, beside the ToolState.
+    /// Data exchanged with the device in this period that the ToolState lacks.
     [[nodiscard]] const DeviceRecord& record() const noexcept { return record_; }
 
-    /// Sends the last force, faded by this much more time. It uses only that force and the device's
+    /// Sends the last force, faded by `elapsed_s` more. It uses only that force and the device's
     /// write, so it may be called in the middle of a frame that a bug has interrupted.
     void fade(double elapsed_s, ForceOff cause) noexcept { send(pipeline_.fade(elapsed_s, cause)); }
 
@@ -99,7 +102,7 @@ private:
     ForcePipeline pipeline_;
     ExternalForceSource* external_source_;
     DeviceSample sample_;
-    DevicePose hand_; ///< Device pose of the last sample.
+    DevicePose pose_; ///< Device pose of the last sample.
     ToolState state_;
     DeviceRecord record_;
     std::atomic<bool> is_braked_for_good_{false};

@@ -17,10 +17,11 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Slack between pairs, measured at the proxy's place before the frame, and forces, made at its new
-/// place.
+/// Largest gap between tool and touched object. A gap arises because pairs are measured at the
+/// proxy's place before the frame, and forces at its new place.
 constexpr double kTouchSlack_m = 1e-3;
-/// Three planes at most hold a proxy; more objects are touched in corners only.
+/// Largest number of touched objects; others get no push. At most three planes hold a proxy, so
+/// only corners touch more objects.
 constexpr std::size_t kMaxTouched = 8;
 constexpr int kRounds = 32;
 
@@ -33,7 +34,8 @@ struct Touched
 
 using TouchedList = StaticVector<Touched, kMaxTouched>;
 
-/// Normal into the object. If tool and surface coincide, only the push determines it.
+/// Unit normal into the object at the nearest point; the push's direction if tool and surface
+/// coincide.
 Vec3 inward_of(const PairOutput& pair, const Vec3& push_n) noexcept
 {
     const Vec3 way_m = pair.nearest_point_m - pair.point_m;
@@ -41,7 +43,8 @@ Vec3 inward_of(const PairOutput& pair, const Vec3& push_n) noexcept
     return length_m > kTouchSlack_m * 1e-3 ? Vec3(way_m / length_m) : Vec3(push_n.normalized());
 }
 
-/// Least squares without negative shares, one share at a time (Gauss and Seidel).
+/// Sets the pushes so that their sum is nearest to `push_n`: least squares without negative pushes,
+/// one push at a time (Gauss and Seidel).
 void fit(TouchedList& touched, const Vec3& push_n) noexcept
 {
     Vec3 left_n = push_n;

@@ -25,7 +25,7 @@ struct TracedFrame
     MonotonicTime end{};                   ///< Time when the force was written.
     std::array<Duration, kStages> stage{}; ///< Durations of the stages, consecutive from the start.
     Duration wake_lateness{};
-    std::uint32_t periods{1};      ///< Periods since the frame before.
+    std::uint32_t periods{1};      ///< Whole periods since the last frame; above 1 after a stall.
     std::uint32_t arrivals{0};     ///< Arrivals taken from the queues.
     std::uint32_t link_updates{0}; ///< Link updates taken from the queues.
     std::uint32_t requests{0};     ///< Requests put into the queues.
@@ -36,7 +36,8 @@ struct TracedFrame
     bool in_contact{false};
 };
 
-static_assert(sizeof(TracedFrame) == 120); // The haptic thread copies this: docs/report.md.
+// Bytes that the haptic thread copies a frame, as stated in docs/report.md.
+static_assert(sizeof(TracedFrame) == 120);
 
 /// Times and results of one round of the chunk loader.
 struct TracedRound
@@ -50,12 +51,12 @@ struct TracedRound
     std::uint64_t refused{0};
 };
 
-/// Passes times from working threads to the one that writes them, in queues of fixed size. No
-/// thread waits: entries beyond the queues are counted and dropped.
+/// Passes times from the haptic and transport threads to the writing thread, in queues of fixed
+/// size. No thread waits: entries that find a queue full are dropped and counted.
 class TraceTap
 {
 public:
-    /// Capacities, at least a second of either.
+    /// Capacities in frames and rounds, each for at least a second.
     static constexpr std::size_t kFrames = 16'384;
     static constexpr std::size_t kRounds = 4'096;
 
@@ -72,7 +73,7 @@ public:
             lost_.fetch_add(1, std::memory_order_relaxed); // A number for display; orders nothing.
         }
     }
-    /// Transport thread, after each round that did something.
+    /// Transport thread, after each round with requests or pieces. Allocates nothing.
     void add(const TracedRound& round) noexcept
     {
         if (!rounds_.try_push(round))
@@ -81,11 +82,11 @@ public:
         }
     }
 
-    /// One other thread: takes the next entry, if any.
+    /// Writing thread: moves the oldest entry into the argument; false if there is none.
     [[nodiscard]] bool try_take(TracedFrame& frame) noexcept { return frames_.try_pop(frame); }
     [[nodiscard]] bool try_take(TracedRound& round) noexcept { return rounds_.try_pop(round); }
 
-    /// Any thread: number of dropped entries.
+    /// Any thread: number of dropped frames and rounds.
     [[nodiscard]] std::uint64_t lost() const noexcept
     {
         return lost_.load(std::memory_order_relaxed);

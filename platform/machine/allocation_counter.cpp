@@ -14,8 +14,8 @@ namespace tactus::allocation_counter
 namespace
 {
 
-// They are constant-initialised, so the first access allocates nothing; a thread's first access may
-// come from inside malloc.
+// The variables are constant-initialised, so the first access allocates nothing; a thread's first
+// access may come from inside malloc.
 constinit thread_local bool thread_is_marked = false;
 constinit thread_local HeapCalls thread_calls{};
 

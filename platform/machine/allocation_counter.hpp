@@ -7,11 +7,11 @@
 namespace tactus
 {
 
-/// Shows that the haptic thread does not use the heap. Programs that link the object library
-/// `tactus_allocation_counter` get their own malloc family, operator new included, that counts the
-/// calls of marked threads and passes them to the C library. Under a sanitizer, which needs that
-/// place, and without glibc nothing is counted and available() is false: check it before taking a
-/// count of zero as proof.
+/// Counts heap calls, to prove that the haptic thread makes none. Programs that link the object
+/// library `tactus_allocation_counter` get their own malloc family, operator new included. It
+/// counts the calls of marked threads and passes them to the C library. Under a sanitizer, which
+/// replaces malloc itself, and without glibc nothing is counted and available() is false. Check it
+/// before taking a count of zero as proof.
 namespace allocation_counter
 {
 

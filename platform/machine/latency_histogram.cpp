@@ -36,7 +36,7 @@ constexpr std::size_t index_of(std::uint64_t value) noexcept
     return (std::size_t{octave} << kSubBits) + static_cast<std::size_t>(value >> octave);
 }
 
-/// Largest value that shares the counter.
+/// Largest value that this counter counts.
 constexpr std::uint64_t upper_edge(std::size_t index) noexcept
 {
     const std::size_t octave = index < (2U << kSubBits) ? 0 : (index >> kSubBits) - 1;
@@ -68,7 +68,7 @@ void LatencyHistogram::record(Duration duration, std::uint64_t times) noexcept
     sum_ns_ += value * times;
 }
 
-/// The last counter also holds all values beyond the range.
+/// Longest value in a counter; the last counter also holds all values beyond the range.
 Duration LatencyHistogram::longest_of(std::size_t index) const noexcept
 {
     const bool is_last = index + 1 == counters_.size();
@@ -82,7 +82,7 @@ LatencyHistogram LatencyHistogram::corrected(Duration interval) const
     for (std::size_t i = index_of(static_cast<std::uint64_t>(interval.ns)); i < counters_.size();
          ++i)
     {
-        // The shortest value that shares the counter: a value of whole intervals leaves nothing.
+        // The counter's shortest value, so that a value of whole intervals leaves no rest.
         const std::int64_t shortest =
             counters_[i] > 0 ? static_cast<std::int64_t>(upper_edge(i - 1)) + 1 : 0;
         for (std::int64_t left = shortest - interval.ns; left > 0; left -= interval.ns)
@@ -130,7 +130,7 @@ Duration LatencyHistogram::quantile(double q) const noexcept
     {
         return {};
     }
-    const double share = q > 0.0 ? std::min(q, 1.0) : 0.0; // It also handles NaN.
+    const double share = q > 0.0 ? std::min(q, 1.0) : 0.0; // NaN counts as 0.
     const double wanted = std::ceil(share * static_cast<double>(count_));
     const std::uint64_t rank =
         std::clamp(static_cast<std::uint64_t>(wanted), std::uint64_t{1}, count_);

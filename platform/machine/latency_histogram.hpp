@@ -12,7 +12,7 @@ namespace tactus
 {
 
 /// Counts durations from 1 ns to 100 s in steps of at most 1/1024 of the value (three significant
-/// digits), so a minute of cycles and one rare stall fit the same table.
+/// digits). So a minute of cycles and one rare stall fit the same table.
 ///
 /// Up to 2,047 ns each nanosecond has a counter; above, each octave has 1,024. All 224 KiB are
 /// allocated and touched at construction; recording allocates nothing and costs a few nanoseconds
@@ -31,21 +31,21 @@ public:
     void record(Duration duration) noexcept;
 
     /// Returns a histogram that includes the values which a stall kept from being measured
-    /// (coordinated omission). If a value is due every `interval` (> 0) and one takes v longer, the
-    /// values due meanwhile waited for its rest: v - interval, v - 2 interval, ... > 0 are added. A
-    /// value beyond kLongest adds only those up to kLongest. Allocates, and takes time in
-    /// proportion to the longest value over the interval; call after measuring. The interval is
-    /// asserted.
+    /// (coordinated omission). For each value v, it adds v - interval, v - 2 interval, ... > 0: the
+    /// waits of values that were due meanwhile, one each `interval` (> 0, asserted). A value beyond
+    /// kLongest adds only those up to kLongest. Allocates, and takes time in proportion to the
+    /// longest value over the interval; call after measuring.
     [[nodiscard]] LatencyHistogram corrected(Duration interval) const;
 
-    /// Adds all values of the other histogram.
+    /// Adds all values of `other`.
     void add(const LatencyHistogram& other) noexcept;
 
-    /// Number of values of at most this length; some up to 1/1024 longer may be included.
+    /// Number of values up to `longest`; values up to 1/1024 longer may be included.
     [[nodiscard]] std::uint64_t count_to(Duration longest) const noexcept;
 
-    /// Upper bound, at most 1/1024 above, of the smallest recorded value that at least the fraction
-    /// `q` of all values do not exceed; `q` is clamped to [0, 1]. Zero if empty.
+    /// Upper bound, at most 1/1024 too high, of the quantile `q`: the smallest recorded value v
+    /// such that at least the fraction `q` of all values is at most v. `q` is clamped to [0, 1].
+    /// Zero if empty.
     [[nodiscard]] Duration quantile(double q) const noexcept;
 
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }

@@ -58,7 +58,7 @@ Cycle PeriodicTimer::spin_until_deadline() noexcept
     return cycle;
 }
 
-/// A machine that preempts the thread during the wait is late as well.
+/// Waits until the deadline. A preemption during the wait counts as wake-up latency, too.
 MonotonicTime PeriodicTimer::wait_out() noexcept
 {
     const bool began_in_time = now() < deadline_;

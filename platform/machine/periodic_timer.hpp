@@ -26,8 +26,8 @@ struct Cycle
     std::uint32_t periods{1};
 };
 
-/// Sums over the timer's life. One stall of k periods is one episode and k missed periods: count
-/// episodes to judge a machine.
+/// Sums since start(). One stall of k periods is one episode and k missed periods: count episodes
+/// to judge a machine.
 struct TimerCounts
 {
     std::uint64_t cycles{0};
@@ -49,8 +49,8 @@ struct TimerCounts
 /// late runs at once; after a longer stall the timer moves to the next grid point, reports the
 /// elapsed periods, and never runs the lost frames in a burst.
 ///
-/// One thread uses a timer; nothing allocates. The rules are here and a backend gives only three
-/// primitives, so they are the same on all machines.
+/// One thread uses a timer; its calls in the loop allocate nothing. Subclasses implement only
+/// now(), sleep_until() and spin_until(), so the rules are the same on all machines.
 class PeriodicTimer
 {
 public:
@@ -61,7 +61,7 @@ public:
 
     /// Starts a grid whose first deadline is one period from now. A restart resets the counts.
     /// `period` must be in [kPeriodMin, kPeriodMax], `margin` in [0, period); others are refused.
-    /// The two calls below require it (asserted).
+    /// sleep_until_margin() and spin_until_deadline() require a start (asserted).
     Result<Done, Refusal> start(Duration period, Duration margin);
 
     /// Sleeps until `margin` before the deadline. Returns at once if that has passed.

@@ -9,12 +9,13 @@
 namespace tactus
 {
 
-/// Memory of all pools: one allocation at start-up, all zero and so touched, aligned to a huge
-/// page. Throws std::bad_alloc if there is none.
+/// Memory of all pools: one allocation at start-up, aligned to a huge page. All bytes are set to
+/// zero, so that every page is present. Throws std::bad_alloc if the system has no memory left.
 ///
-/// It is on huge pages if the system grants them: otherwise a walk through pools of many megabytes
-/// misses the translation cache at nearly every block, and a frame with cold caches walks the page
-/// tables too. The system may take up to kHugePage - 1 bytes more than requested.
+/// The memory is on huge pages if the system grants them. Without them a traversal of many
+/// megabytes misses the translation cache (TLB) at nearly every block. A frame with cold caches
+/// then walks the page tables, too. The system may take up to kHugePage - 1 bytes more than
+/// requested.
 class PoolMemory
 {
 public:

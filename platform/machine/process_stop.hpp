@@ -5,11 +5,12 @@
 namespace tactus
 {
 
-/// Keeps the signal that continues a stopped process until take_process_stop() takes it. Main
-/// thread, before it starts others, which inherit that.
+/// Blocks SIGCONT, so that the continuation of a stopped process stays pending until
+/// take_process_stop() takes it. Call on the main thread before it starts others, which inherit the
+/// signal mask.
 ///
 /// A stopped process is continued by SIGCONT alone, blocked or not, and the system makes the signal
-/// pending before any thread runs again. So no thread can see its own delay before the reason.
+/// pending before any thread runs again. So a thread that sees its own delay also sees the signal.
 void watch_process_stops() noexcept;
 
 /// True if the process was stopped from outside and continued since the last call; false without

@@ -32,9 +32,9 @@ struct RtThreadOptions
     bool lock_memory{true};    ///< Locks all memory of the process, present and future.
     bool allow_no_rt{false};   ///< Runs with the granted rights and lists the refused ones.
     bool is_supervisor{false}; ///< True: a priority one above kPriorityMax is in range, too.
-    /// No processor of the machine sleeps deeply until the thread is joined, if granted (on Linux
-    /// by /dev/cpu_dma_latency; root by default). Waking from a deep sleep may take longer than the
-    /// loop can wait. It costs power.
+    /// Keeps all processors of the machine from deep sleep until the thread is joined, if granted
+    /// (on Linux by /dev/cpu_dma_latency; root by default). Waking from a deep sleep may take
+    /// longer than the loop can wait. The option costs power.
     bool processors_awake{true};
 };
 
@@ -85,9 +85,9 @@ private:
     std::unique_ptr<Running> running_;
 };
 
-/// Refusals of RtThread::start() on this machine, in the same lines; empty if there are none. Tries
-/// it on a short-lived thread, and restores the policy and unlocks memory (also memory locked
-/// before: call it before the first start).
+/// Lines with which RtThread::start() would report refused rights on this machine; empty if all are
+/// granted. Starts a short-lived thread with these options, then unlocks all memory of the process.
+/// So call it before the first start().
 [[nodiscard]] Result<std::vector<std::string>, Refusal>
 probe_realtime(const RtThreadOptions& options);
 

@@ -11,12 +11,12 @@
 /// raises SIGSYS instead of serving it, and the handler counts the call, then makes it on the
 /// thread's behalf.
 ///
-/// The handler's own call passes as follows: the thread's seccomp filter sees no memory and so no
-/// flag, but the address of the calling instruction. It permits one instruction of this file, and
-/// the return from a signal handler; all else traps.
+/// The handler's own call must not trap. A seccomp filter can't read memory and so no flag, but it
+/// sees the address of the calling instruction. It permits one instruction of the implementation,
+/// and the return from a signal handler; all else traps.
 ///
 /// The filter belongs to the calling thread and can't be removed; threads started from it later
-/// inherit it. It costs each call some 3 us, so it is for tests. While it is set, a change of the
+/// inherit it. It costs each call about 3 us, so it is for tests. While it is set, a change of the
 /// signal mask does not outlive the call that requested it, and SIGSYS must stay unblocked; both
 /// hold up to the thread's end.
 ///

@@ -9,8 +9,8 @@
 namespace tactus
 {
 
-/// System counts of one thread since it started; the difference of two readings judges a cycle. A
-/// clean cycle of the haptic loop has no fault and no switch except for its own sleep; an
+/// The system's counts for one thread since its start; the difference of two readings judges a
+/// cycle. A clean cycle of the haptic loop has no fault, and no switch except for its own sleep; an
 /// involuntary switch is the machine's doing. If the system does not count them for a thread
 /// (docs/internals/porting.md), faults and switches stay 0.
 struct ThreadUsage

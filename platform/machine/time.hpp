@@ -62,7 +62,7 @@ struct Duration
 }
 
 /// A point on a clock that never jumps, in nanoseconds from an arbitrary start, for deadlines and
-/// latencies. It has no meaning on another machine or after a reboot.
+/// latencies. Points are meaningless on another machine or after a reboot.
 struct MonotonicTime
 {
     std::int64_t ns{0};

@@ -69,7 +69,7 @@ Result<std::shared_ptr<const udp::Authenticator>, Refusal> read_device_key(const
     { return Refusal{fmt::format("--device-key: {}: {}", printable(path), why)}; };
     if (is_open_to_all(path))
     {
-        return refused("everybody may read it; chmod 600 makes it a secret");
+        return refused("all users may read the file; protect it with chmod 600");
     }
     const auto bytes = read_file(path);
     if (!bytes)

@@ -13,9 +13,9 @@
 namespace tactus::hrtc
 {
 
-/// Authenticator with the key of this file: 64 hexadecimal digits, with white space around them.
-/// Its tags are keyed BLAKE2b (RFC 7693) of 16 bytes. Refused if the file can't be read, has other
-/// contents, or is readable by others than its owner and group.
+/// Authenticator with the key in this file: 64 hexadecimal digits, with white space around them.
+/// Tags are keyed BLAKE2b (RFC 7693) of 16 bytes. Refused if the file can't be read, has other
+/// contents, or may be read by users besides its owner and group.
 [[nodiscard]] Result<std::shared_ptr<const udp::Authenticator>, Refusal>
 read_device_key(const std::string& path);
 

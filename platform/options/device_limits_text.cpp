@@ -21,7 +21,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Name of a limit and one of the two members, either `value` or `turn`.
+/// Name of a limit and its member in one of two structs; the other pointer is null.
 struct NamedLimit
 {
     std::string_view name;
@@ -61,7 +61,7 @@ std::string limit_names()
     return names;
 }
 
-/// Fault of the limits, by the rules for a device that reports them itself.
+/// Fault of the limits by the rules for devices that report their own; empty if none.
 std::string fault_in_limits(const DeviceLimits& limits)
 {
     DeviceInfo info = DhdDeviceOptions::default_info();
@@ -85,7 +85,7 @@ std::string set_device_limits(std::string_view text, DeviceLimits& limits)
         const auto key = std::ranges::find(kNamedLimits, pair.substr(0, equals), &NamedLimit::name);
         if (equals == std::string_view::npos || key == kNamedLimits.end())
         {
-            return fmt::format("'{}' is not KEY=VALUE with one of {}", printable(pair),
+            return fmt::format("'{}' is not KEY=VALUE; the keys are {}", printable(pair),
                                limit_names());
         }
         const std::optional<double> value = parse_number(pair.substr(equals + 1));

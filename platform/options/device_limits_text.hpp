@@ -10,9 +10,9 @@
 namespace tactus::hrtc
 {
 
-/// Sets device limits from `KEY=VALUE` pairs, separated by commas. The keys are the names of the
-/// numbers of DeviceLimits, in SI; those of RotationLimits begin with `rotation.`. Returns the
-/// fault and then changes nothing; empty if there is none.
+/// Sets device limits from `KEY=VALUE` pairs, separated by commas. The keys are the member names of
+/// DeviceLimits, in SI units; those of RotationLimits begin with `rotation.`. Returns the fault,
+/// and then changes nothing; empty if there is none.
 [[nodiscard]] std::string set_device_limits(std::string_view text, DeviceLimits& limits);
 
 } // namespace tactus::hrtc

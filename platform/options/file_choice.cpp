@@ -19,7 +19,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Name and the option that gives it.
+/// Name of a model or scene, and the option that gives it.
 struct Named
 {
     std::string option;
@@ -59,12 +59,12 @@ std::string place_file(const std::string& file, Options& options, RawOptions& ra
         }
         if (file.ends_with(".rec"))
         {
-            return fmt::format("'{}' is a recording: --replay {} runs it again", shown, shown);
+            return fmt::format("'{}' is a recording; replay it with --replay {}", shown, shown);
         }
         return std::filesystem::exists(file + ".spm")
-                   ? fmt::format("'{}': the file is called '{}.spm'", shown, shown)
-                   : fmt::format("'{}' is no command ({}) and no model's or scene's file (.spm, "
-                                 ".gltf, .glb); a published model is --model NAME",
+                   ? fmt::format("'{}': the file is '{}.spm'", shown, shown)
+                   : fmt::format("'{}' is neither a command ({}) nor a file of a model or scene "
+                                 "(.spm, .gltf, .glb); use --model NAME for a published model",
                                  shown, commands);
     }
     if (!options.readers.is_scene_name(file))
@@ -74,7 +74,7 @@ std::string place_file(const std::string& file, Options& options, RawOptions& ra
     }
     if (!options.scene.empty())
     {
-        return fmt::format("'{}': a second scene; one can be touched", printable(file));
+        return fmt::format("'{}' is a second scene; only one scene is possible", printable(file));
     }
     options.scene = file;
     return {};
@@ -111,8 +111,9 @@ std::string take_files(Options& options, RawOptions& raw, const std::string& com
         all, [](const Named& named) { return named.name.find(".spm@") != std::string::npos; });
     if (are_files && pinned != all.end())
     {
-        return fmt::format("{}: '{}': a hash is of published models; a file is given without",
-                           pinned->option, printable(pinned->name));
+        return fmt::format(
+            "{}: '{}': only published models take a hash; give a file without a hash",
+            pinned->option, printable(pinned->name));
     }
     if (raw.transport)
     {
@@ -124,11 +125,10 @@ std::string take_files(Options& options, RawOptions& raw, const std::string& com
     const auto published = std::ranges::find_if_not(all, is_file);
     if (file != all.end() && published != all.end())
     {
-        return fmt::format(
-            "{}: '{}' is a file and '{}' a published name; all come from files ('{}' "
-            "as '{}.spm') or by their names",
-            file->option, printable(file->name), printable(published->name),
-            printable(published->name), printable(published->name));
+        return fmt::format("{}: '{}' is a file and '{}' a published name; give all as files ('{}' "
+                           "as '{}.spm') or all as names",
+                           file->option, printable(file->name), printable(published->name),
+                           printable(published->name), printable(published->name));
     }
     raw.transport = file != all.end() ? "file" : "dds";
     return {};

@@ -13,10 +13,10 @@ namespace tactus::hrtc
 /// True if the text is a path, or the name of a model or scene file.
 [[nodiscard]] bool is_file_name(const std::string& text, const FileReaders& readers);
 
-/// Treats files without an option on the command line as values of --model or --scene. Without
-/// --transport, chooses it: files if all names are files, DDS if none is. Returns the line for
-/// wrong usage, empty if there is none. If a word is no file, the line lists the program's other
-/// `commands`.
+/// Takes files without an option on the command line as values of --model or --scene. Without
+/// --transport, chooses the transport: `file` if all names are files, `dds` if none is. Returns the
+/// message for wrong usage; empty if there is none. `commands`: names of the program's other
+/// commands, for that message.
 [[nodiscard]] std::string take_files(Options& options, RawOptions& raw,
                                      const std::string& commands);
 

@@ -23,7 +23,7 @@ Result<const Kernels*, Refusal> choose_kernels(std::string_view name,
         }
         names += (names.empty() ? "" : ", ") + std::string(kernels->name);
     }
-    return Refusal{fmt::format("--kernels: '{}' is none that this processor runs: {}",
+    return Refusal{fmt::format("--kernels: '{}' is not one of the kernels for this processor: {}",
                                printable(name), names)};
 }
 

@@ -8,6 +8,9 @@
 #include "rt_core/limits.hpp"
 #include "transport/material_ranges.hpp"
 
+#include <array>
+#include <utility>
+
 namespace tactus::hrtc
 {
 
@@ -21,227 +24,238 @@ constexpr double kFrameBudgetMax_us = 10'000.0;
 /// Declares the options of the objects.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
 {
-    line.begin_task("What is touched", "hrtc ball.spm --place 0,0,0.1 --material 800,0.6,0.4");
+    line.begin_task("Models and objects", "hrtc ball.spm --place 0,0,0.1 --material 800,0.6,0.4");
     line.add_option("FILE", raw.files,
-                    "Models to touch without a host (.spm), or a scene (.gltf, .glb): as --model "
-                    "FILE and --scene FILE")
+                    "Model files (.spm) or a scene file (.gltf, .glb) to touch without a server; "
+                    "the same as --model FILE or --scene FILE")
         .not_in_file();
     line.add_option("--model", raw.models,
-                    "Model to touch: NAME, NAME@HASH or NAME@SERVER as published, or a file; "
-                    "repeatable, the same one for several objects that show it")
+                    "Model to touch: NAME, NAME@HASH or NAME@SERVER as published, or a file. "
+                    "Repeatable, one for each object; several objects may show the same model")
         .repeatable();
     line.add_option("--scene", options.scene,
-                    "Instead of --model: all objects of the host whose scene has this name, NAME "
-                    "or NAME@SERVER, as they come, move and go; or those of a glTF file, each with "
-                    "its model beside the file, as spm_build writes it");
+                    "Scene to touch instead of --model: NAME or NAME@SERVER of a server's scene, "
+                    "or a glTF file as spm_build writes it, with the model files beside it. A "
+                    "server may add, move and remove objects during the run");
     line.add_option("--place", raw.places,
-                    "Where the object stands, one for each --model in order, and more for further "
-                    "objects that show the last one: X,Y,Z in m "
-                    "[,RX,RY,RZ rotation vector in degrees [,SCALE]]")
+                    "Pose of an object: X,Y,Z in m [,RX,RY,RZ rotation vector in degrees "
+                    "[,SCALE]]. Repeatable, one for each --model in order; each further one adds "
+                    "an object that shows the last model")
         .repeatable();
-    line.add_option("--objects", options.objects_max,
-                    "Room for so many objects, at least those that are placed; 1 to 4096 "
-                    "[as many as are placed; of a host's scene as many as --pool-mib has of 4 KiB, "
-                    "64 at least]")
-        .integer_between(1U, kMaxObjects);
     line.add_option(
-            "--material", raw.materials,
-            "How the object feels, one for each in order, and further ones as the last --model; "
-            "of a scene all objects, or with OBJECT: before it the one of this name: STIFFNESS in "
-            "N/m, 1 to "
-            "3000, the softer of this and --stiffness counts [,STATIC friction, 0 to 3 "
-            "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]]; or any "
-            "of stiffness=, static=, dynamic=, damping=, viscosity= (drag along the surface in N "
-            "s/m, 0 to 20), texture_height= and texture_length= (bumps, in m, at most 1/32 as high "
-            "as long, felt where the middle of a tool is), with commas between")
+            "--objects", options.objects_max,
+            "Maximum number of objects, at least the number at the start [default: the number at "
+            "the start; for a server's scene, one for each 4 KiB of --pool-mib, at least 64]")
+        .integer_between(1U, kMaxObjects);
+    line.add_option("--material", raw.materials,
+                    "Material of an object. Repeatable, one for each object in order; objects "
+                    "beyond the last --model have the material of the last --model. With --scene, "
+                    "MATERIAL is for all objects, and OBJECT:MATERIAL for the object with this "
+                    "name. MATERIAL is STIFFNESS in N/m, 1 to 3000 [,STATIC friction, 0 to 3 "
+                    "[,DYNAMIC friction, at most the static one [,DAMPING in N s/m, 0 to 20]]], or "
+                    "KEY=VALUE with commas between. The lower of STIFFNESS and --stiffness "
+                    "applies. The keys are stiffness, static, dynamic, damping, viscosity (drag "
+                    "along the surface in N s/m, 0 to 20), texture_height and texture_length "
+                    "(bumps at the middle of a tool, in m, the height at most 1/32 of the length)")
         .repeatable();
 }
 
 /// Declares the options of tools and their devices.
 void declare_tools(CommandLine& line, RawOptions& raw)
 {
-    line.begin_task("Hands, tools and devices",
+    line.begin_task("Tools, devices and simulated operators",
                     "hrtc ball.spm --tool sphere:0.002 --device udp:48500");
     line.add_option("--tools", raw.tool_count,
-                    "Number of tools, 1 to 16. The n-th --tool, --tool-mass, --fixture, --device, "
-                    "--device-limits, --device-frame and --motion are for tool n, or none for its "
-                    "default; in an option file the n-th table [[tool]] has shape, mass, fixture, "
-                    "device, device-limits, device-frame and motion [as many as these speak of, "
-                    "or 1]")
+                    "Number of tools. The n-th --tool, --tool-mass, --fixture, --device, "
+                    "--device-limits, --device-frame and --motion are for the n-th tool; the value "
+                    "none selects the default. In an option file, the n-th table [[tool]] has the "
+                    "keys shape, mass, fixture, device, device-limits, device-frame and motion "
+                    "[default: the number of tools with any of these, at least 1]")
         .integer_between(1U, kMaxTools);
     for (std::size_t i = 0; i < kToolOptions; ++i)
     {
         const ToolOption& option = tool_options()[i];
         line.add_option(option.option, raw.of_tools[i], option.help).repeatable();
     }
-    line.add_option(
-        "--device-key", raw.device_key,
-        "File with the key that udp devices and their drivers authenticate their datagrams "
-        "with: 64 hexadecimal digits, readable by its owner or group alone [no authentication: "
-        "every sender is accepted]");
+    line.add_option("--device-key", raw.device_key,
+                    "File with the key that authenticates the datagrams of udp devices and their "
+                    "drivers: 64 hexadecimal digits, readable only by the file's owner or group "
+                    "[default: no authentication, every sender is accepted]");
     line.add_option("--device-fault", raw.device_faults,
-                    "For tests: what goes wrong with the readings of simulated devices: "
-                    "KIND@FRAME+LENGTH with jitter, dropout, stuck, nan, time_jump or disconnect, "
-                    "from that frame on for so many; repeatable")
+                    "Fault in the readings of simulated devices, for tests: KIND@FRAME+LENGTH, "
+                    "where KIND is jitter, dropout, stuck, nan, time_jump or disconnect. The fault "
+                    "begins at frame FRAME and lasts LENGTH frames. Repeatable")
         .repeatable();
 }
 
 void declare_run(CommandLine& line, Options& options, const CommandForm& form)
 {
     line.begin_task("The run", "hrtc ball.spm --duration 5 --report run.html --report run.json");
-    line.add_option("--rate", options.rate_hz, "Frames a second")
+    line.add_option("--rate", options.rate_hz, "Rate of the haptic loop, in frames a second")
         .integer_between(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz)
         .show_default();
-    line.add_option("--duration", options.duration_s, "Seconds to run")
+    line.add_option("--duration", options.duration_s, "Duration of the run, in seconds")
         .number_between(0.1, 86'400.0)
         .show_default();
     line.add_flag("--strict", options.strict,
-                  "Exit with 1 when a host or a device was lost, a piece came damaged or didn't "
-                  "come within a second, a wall was too soft to feel, or nothing was touched");
+                  "Exit with code 1 if the verdict reports a loss: a lost server or device, a "
+                  "damaged or late piece, a limited material, bounded answers only, a data-limited "
+                  "tool, a wall too soft to feel, or no contact");
     line.add_option("--report", options.report_paths,
-                    "Write the report to this file: JSON when its name ends in .json, a page when "
-                    "it ends in .html; repeatable")
+                    "File for the report: JSON if the name ends in .json, an HTML page if the name "
+                    "ends in .html. Repeatable")
         .repeatable();
     if (!form.records)
     {
         return;
     }
     line.add_option("--histograms", options.histograms_folder,
-                    "Write the percentiles of each time of the report into this folder, as "
-                    "HdrHistogram prints them: frame.hgrm and so on");
-    line.add_option(
-        "--trace", options.trace_path,
-        "Write when each frame, its stages, the queues and the chunk loader did what, in "
-        "Chrome's trace format (.json), which Perfetto opens; some 0.7 MB a second");
+                    "Folder for the percentiles of each time in the report, one file for each "
+                    "time, such as frame.hgrm, in the text format of HdrHistogram");
+    line.add_option("--trace", options.trace_path,
+                    "File for a trace of frames, their stages, the queues and the chunk loader, in "
+                    "Chrome's trace format (.json), which Perfetto opens; about 0.7 MB a second");
 }
 
 /// Declares the options of memory and of a frame's work.
 void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
 {
     line.begin_task("Memory and work", "hrtc large.spm --pool-mib 16 --frame-budget-us 500");
-    line.add_option("--pool-mib", options.pool_mib,
-                    "Memory for all pools of all models, in MiB, at most, everything counted")
+    line.add_option(
+            "--pool-mib", options.pool_mib,
+            "Maximum memory for the pools, tables and queues of all models together, in MiB")
         .number_between(0.25, kLargestPool_mib)
         .show_default();
-    line.add_option("--cache-mib", options.cache_mib,
-                    "Share of it for pages of records, in MiB [about six tenths]")
+    line.add_option(
+            "--cache-mib", options.cache_mib,
+            "Part of --pool-mib for pages of records, in MiB [default: about half of --pool-mib]")
         .number_between(0.05, kLargestPool_mib);
-    line.add_option("--splits", options.splits, "Splits and merges in one frame at most")
+    line.add_option("--splits", options.splits,
+                    "Maximum number of splits, and of merges, in a frame. With --frame-budget-us "
+                    "the default is the largest value")
         .integer_between(std::uint32_t{1}, kMaxSplitsPerFrame)
         .show_default();
     line.add_option(
             "--frame-budget-us", options.frame_budget_us,
-            "Microseconds that a frame may take: its work is at most an instruction for each "
-            "nanosecond, two with a hull, eight with a mesh, and follows what frames take [half of "
-            "the period]")
+            "Time budget of a frame, in microseconds. The work of a frame adapts to the measured "
+            "times of frames. The limit of the work is 1 instruction for each nanosecond, 2 with a "
+            "hull tool, 8 with a mesh tool [default: half of the period]")
         .number_between(kFrameBudgetMin_us, kFrameBudgetMax_us);
     line.add_flag("--no-static", raw.refines_always,
-                  "Refine locally also a model that fits the pools as a whole");
+                  "Refine a model locally even if the whole model fits the pools");
     line.add_option("--predict", raw.prediction,
-                    "How the regions to load are predicted: local, linear, quadratic, distance, or "
-                    "auto, whichever erred least of late")
+                    "Method that predicts the regions to load: local, linear, quadratic, distance, "
+                    "or auto, the method with the least recent error")
         .one_of({kPredictionNames.begin(), kPredictionNames.end()})
         .show_default();
     line.add_option("--kernels", raw.kernels,
-                    "Instructions of the processor that queries are made of: portable, or avx2 "
-                    "where there is that; no answer differs [the fastest that there are]");
+                    "Processor instructions for queries: portable, or avx2 if the processor has "
+                    "them. All give the same answers [default: the fastest available]");
 }
 
 void declare_force(CommandLine& line, Options& options)
 {
-    line.begin_task("How it feels", "hrtc ball.spm --stiffness 1000");
-    line.add_option("--stiffness", options.stiffness_n_per_m, "Of the virtual wall, in N/m")
+    line.begin_task("Forces and speed limits", "hrtc ball.spm --stiffness 1000");
+    line.add_option("--stiffness", options.stiffness_n_per_m,
+                    "Stiffness of the virtual wall, in N/m")
         .number_between(1.0, kStiffest_n_per_m)
         .show_default();
     line.add_option("--angular-stiffness", options.angular_stiffness_nm_per_rad,
-                    "Of the spring that turns tools other than spheres, in N m/rad; the device's "
-                    "own cap holds for it, too [--stiffness times the square of the tool's size]")
-        .number_between(kSoftestTurn_nm_per_rad, kStiffestTurn_nm_per_rad);
-    line.add_option("--force-shading", options.shading_m,
-                    "Points and spheres feel facets within this width, in metres, as one smooth "
-                    "surface, which is within an eighth of it of the mesh; edges of more than "
-                    "25 degrees stay [each facet is felt]")
+                    "Stiffness of the rotational spring of tools other than points and spheres, in "
+                    "N m/rad. The device's own limit applies as well [default: --stiffness times "
+                    "the square of the tool's size]")
+        .number_between(kSoftest_nm_per_rad, kStiffest_nm_per_rad);
+    line.add_option(
+            "--force-shading", options.shading_m,
+            "Width of force shading, in metres. Points and spheres feel the facets within the "
+            "width as one smooth surface, at most an eighth of the width away from the mesh. Edges "
+            "of more than 25 degrees stay sharp [default: no shading, each facet is felt]")
         .number_between(kShadingWidthMin_m, kShadingWidthMax_m);
     line.add_option("--force-tolerance", options.force_tolerance_n,
-                    "Coarser levels count as the surface where that changes a force by no more "
-                    "than this, in newtons, and farther where the pools have no room for finer "
-                    "ones; 0: only exact faces do. Not for mesh tools")
+                    "Largest change of a force by coarser levels that count as the surface, in "
+                    "newtons; larger where the pools have no room for finer levels. With 0, only "
+                    "exact faces count. Not for mesh tools")
         .number_between(0.0, kForceToleranceMax_n)
         .show_default();
     line.add_option("--slew", options.slew_share_per_ms,
-                    "How fast a force may change beside what hand and objects make, as a share of "
-                    "the device's largest force in a millisecond")
+                    "Maximum change of a force in a millisecond beyond the effect of hand and "
+                    "objects, as a share of the device's largest force")
         .number_between(kSlewShareMin_per_ms, 1.0)
         .show_default();
     line.add_option("--clutch", options.clutch_button,
-                    "Button of each device, from 0, that parts hand and tool while it is held: the "
-                    "tool stays, without a force, and goes on from there [none]")
+                    "Clutch button of each device, counted from 0. While the button is held, the "
+                    "hand moves freely and the tool stays in place without a force [default: none]")
         .integer_between(0U, kButtons - 1U);
     line.add_option("--speed-limit", options.speed_limit_m_per_s,
-                    "Speed of the hand, in m/s, above which its force fades [the device's own]")
+                    "Speed of the hand above which its force fades, in m/s [default: the device's "
+                    "own limit]")
         .number_between(0.01, 100.0);
     line.add_option("--object-speed", options.object_speed_m_per_s,
-                    "Speed limit, in m/s, of an object that a tool touches or may within 20 ms: "
-                    "it is carried no faster, and the force fades while its host moves it "
-                    "farther")
+                    "Object speed limit, in m/s, for objects that a tool touches or may touch "
+                    "within 20 ms. If a server moves an object faster, the object follows at the "
+                    "limit, and the force fades while the object is far behind")
         .number_between(0.001, 100.0)
         .show_default();
     line.add_option("--proxy-speed", options.proxy_speed_m_per_s,
-                    "In m/s, at which a tool in contact follows a faster hand; what it needs round "
-                    "itself grows with it [a diagonal of the first model a second]")
+                    "Proxy speed limit, in m/s: the speed at which a tool in contact follows a "
+                    "faster hand. The reach of the tool grows with the limit [default: a diagonal "
+                    "of the first model a second]")
         .number_between(0.001, 100.0);
 }
 
 void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
 {
-    line.begin_task("Where models come from", "hrtc --model ball --domain 7 --wait 60");
+    line.begin_task("Servers and files", "hrtc --model ball --domain 7 --wait 60");
     line.add_option("--transport", raw.transport,
-                    "Where models come from [files where they are named, else DDS]")
+                    "Source of the models: dds (servers) or file [default: file if a file is "
+                    "named, otherwise dds]")
         .one_of({"dds", "file"});
     line.add_option("--domain", options.domain,
-                    "DDS domain; given with models from files, viewers (spm_view) see the run "
-                    "there")
+                    "DDS domain. With models from files, the option makes the run visible to "
+                    "viewers (spm_view) in that domain")
         .integer_between(0, 232)
         .show_default();
     line.add_option("--name", options.name,
-                    "With DDS: the controller's name, 1 to 63 bytes of letters, digits, . _ -, "
-                    "that hosts show and by which rights can be given [hrtc-PID]");
-    line.add_option("--failover", raw.failover,
-                    "Which server may take the place of the one that was taken at the start, when "
-                    "that is gone: SERVER, as in NAME@SERVER, is its machine, MACHINE or "
-                    "MACHINE:PROCESS, or with DDS Security its certificate, cert:HEX, as lines and "
-                    "reports name it; any: any that offers the same; repeatable [none; with DDS "
-                    "Security one with the same certificate]")
+                    "Name of the controller with DDS (1 to 63 bytes of letters, digits, . _ -). "
+                    "Servers show the name, and access rights can refer to it [default: hrtc-PID]");
+    line.add_option(
+            "--failover", raw.failover,
+            "Server that may replace the first server if that one is lost: MACHINE or "
+            "MACHINE:PROCESS, or with DDS Security the certificate, cert:HEX, as in NAME@SERVER, "
+            "log lines and reports. The value any allows every server of the same models. "
+            "Repeatable [default: none; with DDS Security, a server with the same certificate]")
         .repeatable();
     line.add_flag("--ignore-poses", raw.ignores_poses,
-                  "Leave the objects where --place or --scene put them at the start, whatever "
-                  "their hosts say");
+                  "Keep the objects at their start poses from --place or --scene; ignore the poses "
+                  "that servers send");
     line.add_flag("--no-refinement-state", raw.hides_refinement_state,
-                  "With DDS: do not tell viewers (spm_view) which parts of the models are refined");
-    line.add_option("--wait", options.wait_s,
-                    "Seconds to wait for a model to be published, and for a device to come")
+                  "With DDS, do not send the refinement state to viewers (spm_view)");
+    line.add_option(
+            "--wait", options.wait_s,
+            "Maximum wait for a model to be published and for a device to connect, in seconds")
         .number_between(0.1, 3'600.0)
         .show_default();
 }
 
 void declare_thread(CommandLine& line, Options& options, RawOptions& raw)
 {
-    line.begin_task("The machine", "hrtc ball.spm --cpu 1 --priority 90");
+    line.begin_task("Real-time thread", "hrtc ball.spm --cpu 1 --priority 90");
     line.add_option("--priority", options.thread.priority,
                     "SCHED_FIFO priority of the haptic thread")
         .integer_between(RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax)
         .show_default();
     line.add_option("--supervisor-periods", options.supervisor_periods,
-                    "Periods that the haptic loop may be silent until the supervisor takes the "
-                    "forces away [3 on a PREEMPT_RT kernel, 10 elsewhere]")
+                    "Number of periods without a heartbeat of the haptic loop until the supervisor "
+                    "brakes the devices [default: 3 on a PREEMPT_RT kernel, 10 elsewhere]")
         .integer_between(2U, 1'000U);
-    line.add_option("--cpu", raw.cpu, "Processor of the haptic thread [left to the system]")
+    line.add_option("--cpu", raw.cpu,
+                    "Processor of the haptic thread [default: left to the system]")
         .integer_between(0, 1'023);
     line.add_flag("--allow-no-rt", options.thread.allow_no_rt,
-                  "Run without SCHED_FIFO or locked memory when they are refused");
+                  "Run without SCHED_FIFO or locked memory if the system refuses them");
     line.add_flag("--trap-system-calls", options.trap_system_calls,
-                  "For tests: count the system calls that frames make, which must be none; every "
-                  "call of the haptic thread costs some 3 us more");
+                  "Count the system calls in frames, for tests; there must be none. Each system "
+                  "call of the haptic thread takes about 3 us longer");
 }
 
 /// Declares the option file, whose keys are the options' names without the dashes.
@@ -249,8 +263,7 @@ void declare_config(CommandLine& line, RawOptions& raw)
 {
     line.begin_task("Options from a file",
                     "hrtc ball.spm --print-config >my.toml; hrtc --config my.toml");
-    line.add_option_file("--config",
-                         "Read options from this TOML file; the command line goes first");
+    line.add_option_file("--config", "TOML file with options; the command line overrides the file");
     std::vector<std::string> keys;
     for (const ToolOption& option : tool_options())
     {
@@ -258,31 +271,37 @@ void declare_config(CommandLine& line, RawOptions& raw)
     }
     line.add_option_tables("tool", keys, raw.tool_tables);
     line.add_flag("--print-config", raw.prints_config,
-                  "Print what the options come to as such a file, and end")
+                  "Print the resulting options as a TOML file, and exit")
         .not_in_file();
 }
 
 void declare_recording(CommandLine& line, Options& options)
 {
-    line.begin_task("Runs that can be repeated",
+    line.begin_task("Virtual time, recording and replay",
                     "hrtc ball.spm --record run.rec; hrtc --replay run.rec");
     line.add_flag("--virtual-time", options.virtual_time,
-                  "With models from files and simulated or recorded hands: a clock that stands "
-                  "still while anything is computed, so that the run is as fast as the machine "
-                  "goes, comes out the same each time, and says nothing of deadlines");
+                  "Use a clock that stands still during computation. The run is as fast as the "
+                  "machine allows, gives the same result each time, and measures no deadlines. "
+                  "Needs models from files, and simulated or recorded devices");
     line.add_option(
         "--record", options.record_path,
-        "Record all that goes into every frame, and hashes of what comes out, into this "
-        "file");
+        "File for a recording of all inputs of every frame, with hashes of the outputs");
     line.add_option("--replay", options.replay_path,
-                    "Instead of a run: give the frames of a recording the same again; exit code 1 "
-                    "when one comes out otherwise. Takes --kernels, --export and no other option");
+                    "Recording to replay instead of a run. Exit code 1 if a frame has another "
+                    "result than before. Takes --kernels, --export and no other option");
     line.add_option("--export", options.export_paths,
-                    "With --replay: write its frames for other tools, with all that went in and "
-                    "came out: a table when the name ends in .csv, JSON lines when in .jsonl, for "
-                    "PlotJuggler and Foxglove when in .mcap; repeatable")
+                    "File for the frames of --replay with all inputs and outputs: a table if the "
+                    "name ends in .csv, JSON lines if in .jsonl, a file for PlotJuggler and "
+                    "Foxglove if in .mcap. Repeatable")
         .repeatable();
 }
+
+/// Options of version 0.2.0 that are called otherwise.
+constexpr std::array<std::pair<const char*, const char*>, 4> kFormerNames{
+    {{"follow-speed", "proxy-speed"},
+     {"guide", "fixture"},
+     {"no-front", "no-refinement-state"},
+     {"smooth", "force-shading"}}};
 
 } // namespace
 
@@ -297,6 +316,10 @@ void declare_options(CommandLine& line, Options& options, RawOptions& raw, const
     declare_transport(line, options, raw);
     declare_thread(line, options, raw);
     declare_config(line, raw);
+    for (const auto& [former, name] : kFormerNames)
+    {
+        line.add_former_name(former, name);
+    }
     if (form.records)
     {
         declare_recording(line, options);

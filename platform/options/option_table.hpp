@@ -18,7 +18,7 @@ namespace tactus::hrtc
 /// Number of options with one value for each tool.
 inline constexpr std::size_t kToolOptions = 7;
 
-/// Texts of the command line that options.cpp parses after the line itself.
+/// Texts of the command line that parse_options() parses further after CommandLine::parse().
 struct RawOptions
 {
     std::vector<std::string> files; ///< Files without an option.
@@ -26,10 +26,10 @@ struct RawOptions
     std::vector<std::string> places;
     std::vector<std::string> materials;
     std::optional<std::uint32_t> tool_count;
-    std::array<std::vector<std::string>, kToolOptions> of_tools; ///< Values for each of
-                                                                 ///< tool_options().
-    std::vector<OptionTable> tool_tables;                        ///< Tables [[tool]] of the option
-                                                                 ///< file.
+    /// Values of each option of tool_options(), one a tool.
+    std::array<std::vector<std::string>, kToolOptions> of_tools;
+    /// Tables [[tool]] of the option file, one a tool.
+    std::vector<OptionTable> tool_tables;
     std::optional<std::string> device_key;
     std::vector<std::string> device_faults;
     std::optional<std::string> transport;

@@ -27,7 +27,8 @@ namespace tactus::hrtc
 namespace
 {
 
-constexpr std::size_t kDeviceFaultsMax = 64; ///< Each reading checks all of them.
+/// Largest number of device faults; each reading of a device checks all.
+constexpr std::size_t kDeviceFaultsMax = 64;
 
 /// Text of an option file for these options. Options without a value become comments, because a
 /// file can't unset an option. Files given without an option appear as --model or --scene, and
@@ -56,8 +57,8 @@ std::string option_file(const CommandLine& line, const Options& options, const R
     return text + tool_tables(raw);
 }
 
-/// Fault of options beside --replay, which takes all other settings from the recording; empty if
-/// none.
+/// Fault of the options given beside --replay, which takes all other settings from the recording;
+/// empty if none.
 std::string check_replay(const CommandLine& line)
 {
     for (const std::string& name : line.given())
@@ -65,7 +66,7 @@ std::string check_replay(const CommandLine& line)
         if (name != "--replay" && name != "--kernels" && name != "--export" &&
             name != "--log-level" && name != "--json-log")
         {
-            return "--replay: takes --kernels, --export and no other option; " + name +
+            return "--replay: takes only --kernels, --export, --log-level and --json-log; " + name +
                    " was given";
         }
     }
@@ -82,8 +83,7 @@ std::string check_exports(const Options& options)
         }
         if (!is_export_name(path))
         {
-            return fmt::format("--export: '{}' ends neither in .csv nor in .jsonl or .mcap",
-                               printable(path));
+            return fmt::format("--export: '{}' must end in .csv, .jsonl or .mcap", printable(path));
         }
         if (std::ranges::count(options.export_paths, path) > 1)
         {
@@ -106,7 +106,7 @@ std::string check_files(const CommandLine& line, const Options& options)
     {
         if (line.is_given(name) && path->empty())
         {
-            return std::string(name) + ": a file's name is needed";
+            return std::string(name) + ": the name is empty";
         }
     }
     if (const std::string fault = check_exports(options); !fault.empty())
@@ -117,12 +117,11 @@ std::string check_files(const CommandLine& line, const Options& options)
     {
         if (path.empty())
         {
-            return "--report: a file's name is needed";
+            return "--report: the name is empty";
         }
         if (!path.ends_with(".json") && !is_page_name(path))
         {
-            return fmt::format("--report: '{}' ends neither in .json nor, for a page, in .html",
-                               printable(path));
+            return fmt::format("--report: '{}' must end in .json or .html", printable(path));
         }
         if (std::ranges::count(options.report_paths, path) > 1)
         {
@@ -144,15 +143,15 @@ std::string check_files(const CommandLine& line, const Options& options)
     return "";
 }
 
-/// Adds an object for each --model, and one of the last model for each further --place. If a model
-/// is named twice, two objects share it. Returns the fault; empty if none.
+/// Adds an object for each --model; further --place options add objects of the last model. If a
+/// model is named twice, two objects share it. Returns the fault; empty if none.
 std::string check_models(Options& options, const RawOptions& raw)
 {
     if (!options.scene.empty())
     {
         if (!raw.models.empty() || !raw.places.empty())
         {
-            return "--scene: takes the place of --model and --place";
+            return "--scene: can't be combined with --model and --place";
         }
         if (std::string fault = options.scene_materials.take(raw.materials); !fault.empty())
         {
@@ -163,14 +162,14 @@ std::string check_models(Options& options, const RawOptions& raw)
             return "";
         }
         const auto selector = parse_selector(options.scene);
-        return !selector               ? "--scene: " + selector.error().text
-               : selector.value().hash ? "--scene: a hash is of models; a scene has a NAME or "
-                                         "NAME@SERVER"
-                                       : "";
+        return !selector ? "--scene: " + selector.error().text
+               : selector.value().hash
+                   ? "--scene: only models have a hash; a scene is NAME or NAME@SERVER"
+                   : "";
     }
     if (raw.models.empty())
     {
-        return "a model is required: hrtc FILE.spm, or --model NAME of one that is published; see "
+        return "a model is required: hrtc FILE.spm, or --model NAME for a published model; see "
                "--help";
     }
     const std::size_t objects = std::max(raw.models.size(), raw.places.size());
@@ -200,8 +199,8 @@ std::string check_models(Options& options, const RawOptions& raw)
     }
     if (options.objects_max != 0 && options.objects_max < objects)
     {
-        return fmt::format("--objects: {}; {} are there from the start", options.objects_max,
-                           objects);
+        return fmt::format("--objects: {} is less than the {} objects at the start",
+                           options.objects_max, objects);
     }
     return {};
 }
@@ -230,8 +229,8 @@ std::string check_materials(Options& options, const RawOptions& raw)
         const auto material = parse_material(raw.materials[i]);
         if (const std::size_t colon = raw.materials[i].find(':'); colon != std::string::npos)
         {
-            return fmt::format("--material: '{}': only a --scene's objects have names; here "
-                               "materials are in the objects' order: '{}'?",
+            return fmt::format("--material: '{}': only objects of a --scene have names; give "
+                               "materials in the order of the objects: '{}'?",
                                printable(raw.materials[i]),
                                printable(raw.materials[i].substr(colon + 1)));
         }
@@ -263,7 +262,7 @@ std::string check_smooth(Options& options, const RawOptions& /*raw*/)
                                tool.shape->hull_file.empty());
     };
     return options.shading_m > 0.0 && std::ranges::none_of(options.tools, is_sphere)
-               ? "--force-shading: no --tool is a point or a sphere, and others feel each facet"
+               ? "--force-shading: needs a point or a sphere as --tool"
                : "";
 }
 
@@ -358,14 +357,14 @@ std::string take_failover(Options& options, const RawOptions& raw)
 {
     if (!raw.failover.empty() && options.transport == TransportKind::file)
     {
-        return "--failover: files have no server that could be gone";
+        return "--failover: models from files have no server";
     }
     for (const std::string& server : raw.failover)
     {
         if (!is_valid_server(server))
         {
-            return fmt::format("--failover: '{}' is no server, MACHINE[:PROCESS] or cert: and 12 "
-                               "digits of 0-9 a-f, nor any",
+            return fmt::format("--failover: '{}' is not MACHINE[:PROCESS], cert: with 12 "
+                               "hexadecimal digits (0-9 a-f), or any",
                                printable(server));
         }
         if (server == "any")
@@ -416,17 +415,16 @@ std::string check_virtual_time(Options& options, const RawOptions& raw)
     }
     if (options.transport != TransportKind::file)
     {
-        return "--virtual-time: takes models from files; hosts keep to the time of day";
+        return "--virtual-time: models must be files; servers run in real time";
     }
     if (has_device(options, DeviceKind::udp) || has_device(options, DeviceKind::dhd) ||
         has_device(options, DeviceKind::plugin))
     {
-        return "--virtual-time: takes devices that are simulated or recorded; others keep to the "
-               "time of day";
+        return "--virtual-time: devices must be simulated or replayed; others run in real time";
     }
     if (!options.trace_path.empty() || !options.histograms_folder.empty())
     {
-        return fmt::format("--virtual-time: takes no time that {} could tell of",
+        return fmt::format("--virtual-time: {} would have no times",
                            options.trace_path.empty() ? "--histograms" : "--trace");
     }
     // The default of --priority is accepted, because --print-config prints it.
@@ -437,7 +435,7 @@ std::string check_virtual_time(Options& options, const RawOptions& raw)
                                    : nullptr;
     if (of_real_time != nullptr)
     {
-        return fmt::format("--virtual-time: there is no real-time thread that {} could be for",
+        return fmt::format("--virtual-time: {} has no effect without a real-time thread",
                            of_real_time);
     }
     options.thread.is_realtime = false;
@@ -505,7 +503,7 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     options.is_watched = options.transport == TransportKind::dds || is_shown;
     if (line.is_given("--domain") && !options.is_watched)
     {
-        log_message(LogLevel::info, "hrtc", "note: --domain has no use in virtual time");
+        log_message(LogLevel::info, "hrtc", "note: --domain has no effect with --virtual-time");
     }
     if (const std::string fault = check_virtual_time(options, raw); !fault.empty())
     {

@@ -16,20 +16,21 @@ class CommandLine;
 namespace tactus::hrtc
 {
 
-/// Command that runs the loop, with the differences of its command line from that of hrtc.
+/// Command line of a program that runs the loop: its differences from that of hrtc.
 struct CommandForm
 {
     std::string name{"hrtc"};
-    std::string description{"Haptic real-time controller: touches models that a host publishes, "
-                            "every period, exactly or with a proven bound."};
-    bool records{true}; ///< Also takes --record, --replay, --trace and --histograms.
+    std::string description{
+        "Haptic real-time controller: computes the contact of tools with models from servers or "
+        "files, every period, exactly or with a proven bound."};
+    bool records{true}; ///< True if the command takes --record, --replay, --trace and --histograms.
     double duration_s{10.0};
-    std::function<void(CommandLine&)> declare; ///< Declares the command's own options; may be
-                                               ///< empty.
-    std::string footer;                        ///< End of --help.
-    std::string commands;                      ///< Names of the program's other commands, for
-                                               ///< messages.
-    FileReaders readers;                       ///< Readers for the options.
+    /// Declares the command's own options; may be empty.
+    std::function<void(CommandLine&)> declare;
+    std::string footer; ///< End of --help.
+    /// Names of the program's other commands, for messages.
+    std::string commands;
+    FileReaders readers; ///< Value of Options::readers.
 };
 
 /// True if a report of this name is a page: the name ends in .html.

@@ -19,7 +19,8 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Sets `value` to the result of `parsed`, or else returns the refusal.
+/// Sets `value` to the value of `parsed` and returns an empty text, or returns the text of its
+/// refusal.
 template <typename Value, typename Parsed>
 std::string set_to(Value& value, Parsed parsed)
 {
@@ -78,55 +79,56 @@ std::string set_motion(const std::string& text, ToolOptions& tool)
         return fmt::format("'{}' is not {}, perhaps with :OBJECT behind it", printable(text),
                            kMotionNames);
     }
-    tool.hand = {*motion, colon < text.size() ? text.substr(colon + 1) : std::string()};
+    tool.simulated = {*motion, colon < text.size() ? text.substr(colon + 1) : std::string()};
     return tool.device.kind == DeviceKind::simulated ? "" : "its device is not a simulated one";
 }
 
 constexpr ToolOption kOptions[kToolOptions] = {
     {"shape", "--tool",
-     "Tool, in metres: point; sphere:R; capsule:R,L, an axis of length L along z; box:X,Y,Z[,R]; "
-     "hull:FILE[,R], of a mesh file's corners; mesh:NAME[@HASH][,R], a model (with --transport "
-     "file its path); R is a radius all round [a sphere of 1 % of the first model's diagonal]",
+     "Shape of the tool, in metres: point; sphere:R; capsule:R,L, an axis of length L along z; "
+     "box:X,Y,Z[,R]; hull:FILE[,R], the convex hull of a mesh file's vertices; "
+     "mesh:NAME[@HASH][,R], a model (with --transport file, its path). R is a radius added all "
+     "round [default: a sphere with a radius of 1 % of the first model's diagonal]",
      set_shape},
     {"mass", "--tool-mass",
-     "Payload of the device that is to weigh nothing in the hand: KG, 0 to 5 [,X,Y,Z of its "
-     "centre in the tool's frame, within 1 m]; down is the device's -z [0]",
+     "Payload of the device for gravity compensation: KG, 0 to 5 [,X,Y,Z of the payload's centre "
+     "in the tool's frame, in m, within 1 m]. Down is -z of the device [default: 0]",
      set_mass},
     {"fixture", "--fixture",
-     "A spring of its own that guides the tool; world coordinates in m: point:X,Y,Z pulls it "
-     "there; line:X,Y,Z,DX,DY,DZ to the line through X,Y,Z along D; plane:X,Y,Z,NX,NY,NZ pushes "
-     "it back to the side where N points; gripper:X holds the device's gripper X open, 0 to 1; "
-     "each with [,STIFFNESS in N/m, 1 to 3000 [100] [,FORCE at most, in N, 0.01 to 100 [1]]] "
-     "[none]",
+     "Virtual fixture, a spring that guides the tool, in world coordinates and m: point:X,Y,Z "
+     "pulls the tool to the point; line:X,Y,Z,DX,DY,DZ pulls the tool to the line through X,Y,Z "
+     "along D; plane:X,Y,Z,NX,NY,NZ pushes the tool back to the side to which N points; gripper:X "
+     "holds the device's gripper open by X, 0 to 1. Each form takes [,STIFFNESS in N/m, 1 to 3000 "
+     "[,maximum FORCE in N, 0.01 to 100]], otherwise 100 N/m and 1 N [default: none]",
      set_fixture},
     {"device", "--device",
      "Device that moves the tool: sim[:CLASS], a simulated operator on a device of the class "
-     "touch, "
-     "omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of Force "
-     "Dimension's; replay:FILE, the hand of a recording; plugin:FILE[,WORDS], a library of your "
-     "own [sim]",
+     "touch, omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of "
+     "Force Dimension; replay:FILE, the device of a recording; plugin:FILE[,WORDS], a library of "
+     "your own [default: sim]",
      set_device},
     {"device-limits", "--device-limits",
-     "Properties of a sim or dhd device, which doesn't tell them: KEY=VALUE with commas between, "
-     "as mass_kg=0.2,damping_n_s_per_m=1.5; stability depends on them, so measure them [as the "
-     "class; of dhd what is safe for most]",
+     "Properties of a sim or dhd device, which does not report them: KEY=VALUE with commas "
+     "between, such as mass_kg=0.2,damping_n_s_per_m=1.5. Stability depends on these properties; "
+     "measure them [default: those of the class; for dhd, values that are safe for most devices]",
      set_limits},
     {"device-frame", "--device-frame",
-     "Where the device's coordinates are in the world: as --place, SCALE being that of its motion "
-     "[the world's]",
+     "Pose in the world of the coordinates of a udp, dhd or plugin device, in the form of --place; "
+     "SCALE is the scale of the device's motion [default: world coordinates]",
      set_frame},
     {"motion", "--motion",
      "Motion of a simulated operator: script, free, approach, slide, tap, teleport, spin, tremor, "
-     "turn, edge or peg; with :OBJECT behind it, on the scene's object of this name, or the first "
-     "that shows the model of this name [script, each hand on another object]",
+     "turn, edge or peg. With :OBJECT behind the motion, the operator touches the scene's object "
+     "with this name, or the first object that shows the model with this name [default: script, "
+     "each operator on another object]",
      set_motion},
 };
 
-/// Text of an option of one tool, and its source.
+/// Text given for an option of one tool, and where.
 struct Said
 {
     std::string text;
-    std::string place; ///< FILE:LINE; empty: the command line.
+    std::string place; ///< Place as FILE:LINE; empty: the command line.
 };
 
 /// Given text of an option; none if the tool has the default.
@@ -147,7 +149,8 @@ std::optional<Said> said_of(const RawOptions& raw, std::size_t tool, std::size_t
     return said && said->text == "none" ? std::nullopt : said;
 }
 
-/// Number of tools with a given option. If it exceeds `most`, sets `fault`.
+/// Number of tools that the options and tables give values for. If one gives more than `most`, sets
+/// `fault`.
 std::size_t count_tools(const RawOptions& raw, std::size_t most, std::string& fault)
 {
     std::size_t count = 0;

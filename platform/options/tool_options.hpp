@@ -16,17 +16,17 @@ struct ToolOption
     const char* key;
     const char* option;
     const char* help;
-    /// Applies the text to the tool. Returns the fault; empty if there is none.
+    /// Parses the text and sets it for the tool. Returns the fault; empty if there is none.
     std::string (*set)(const std::string& text, ToolOptions& tool);
 };
 
-/// Options in the order of RawOptions::of_tools, in which they are applied. The device comes before
-/// its properties.
+/// Options of tools, in the order of RawOptions::of_tools, which is also the order of their
+/// application: the device comes before its properties.
 [[nodiscard]] std::span<const ToolOption, kToolOptions> tool_options();
 
-/// Makes the tools. The n-th value of an option applies to tool n, or else the value of the n-th
-/// table. Without either, and for the word none, the tool has the default. Returns the fault; empty
-/// if there is none.
+/// Makes the tools of the options. Tool n takes the n-th value of each option, or else the value in
+/// the n-th table. Without a value, or with the word none, the tool has the default. Returns the
+/// fault; empty if there is none.
 [[nodiscard]] std::string take_tools(Options& options, const RawOptions& raw);
 
 /// Options of the tools, as tables of an option file.

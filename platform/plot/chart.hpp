@@ -18,7 +18,7 @@ enum class MarkKind : std::uint8_t
     fault,
 };
 
-/// A vertical line. Marks of one name are listed below the chart once, with their number.
+/// A vertical line. Marks of one name are listed below the chart once, with their count.
 struct Mark
 {
     double x{0.0};
@@ -56,7 +56,8 @@ struct ChartLibrary
 {
     std::string script;
     std::string style;
-    std::string missing; ///< Reason why there is none, for the page; empty: it is there.
+    /// Reason why there is no library, shown on the page; empty: there is one.
+    std::string missing;
 
     /// Reads dygraphs/dygraph.min.js and .css below `folder`. A file that can't be read, or that
     /// would end its element, sets `missing`.

@@ -38,10 +38,11 @@ std::string read_into(std::string& text, const std::filesystem::path& path)
     text.assign(std::istreambuf_iterator<char>(file), {});
     if (!file || text.empty())
     {
-        return fmt::format("{} can't be read; it is of Debian's libjs-dygraphs", path.string());
+        return fmt::format("{} can't be read; install Debian's package libjs-dygraphs",
+                           path.string());
     }
     return leaves_its_element(text)
-               ? fmt::format("{} has in it what would end its part of the page", path.string())
+               ? fmt::format("{} contains text that would end its part of the page", path.string())
                : "";
 }
 

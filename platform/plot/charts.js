@@ -23,7 +23,8 @@ function share_of(graph, x) {
   return graph.is_series ? (x - low) / (high - low) : Math.log(x / low) / Math.log(high / low);
 }
 
-/// Draws the marks below the lines, light ones first; many are pale, so that they hide nothing.
+/// Draws the marks below the lines, faults last. The more marks, the paler, so that they hide
+/// nothing.
 function draw_marks(canvas, area, graph, marks) {
   for (const kind of ["plain", "warning", "fault"]) {
     const shares = marks.filter((mark) => mark.kind === kind).flatMap((mark) => mark.x)

@@ -97,7 +97,7 @@ const char* name_of(MarkKind kind)
     return "plain";
 }
 
-/// Value rounded to the digits that a reader of a chart can use.
+/// Value rounded to the six digits that a reader of a chart can use.
 double rounded(double value)
 {
     return std::isfinite(value) ? std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr)
@@ -162,7 +162,8 @@ std::string to_json(const Chart& chart)
     return safe;
 }
 
-/// Script element whose content is no markup, for XML and, as a comment of the script's, for HTML.
+/// Script element. The CDATA marks make its content no markup in XML; in HTML they are comments of
+/// the script.
 std::string script_of(std::string_view text)
 {
     return fmt::format("<script>//<![CDATA[\n{}\n//]]></script>\n", text);
@@ -262,8 +263,8 @@ void Page::charts(const std::vector<Chart>& charts)
     }
     if (charts_.empty())
     {
-        body_ += "<p class=\"note\">Drag to zoom in, with the shift key to move; a double click "
-                 "shows all again.</p>\n<noscript><p>Charts need scripts to be allowed.</p>"
+        body_ += "<p class=\"note\">Drag to zoom in. Drag with the shift key to move. Double-click "
+                 "to show all.</p>\n<noscript><p>Allow scripts to see the charts.</p>"
                  "</noscript>\n";
     }
     body_ += "<div class=\"charts\">\n";

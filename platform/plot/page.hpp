@@ -29,10 +29,10 @@ struct TitledTable
     Table table;
 };
 
-/// One self-contained HTML file that is well-formed XML as well, for screens, light or dark by the
-/// reader's setting, phones and paper: charts shrink with the page, and wide tables scroll inside
-/// their box. All texts are escaped. The same calls make the same bytes. Scripts only draw charts:
-/// all else works without them.
+/// Builds one self-contained HTML file that is well-formed XML, too. It suits screens, light or
+/// dark by the reader's setting, phones and paper: charts shrink with the page, and wide tables
+/// scroll inside their box. All texts are escaped. The same calls make the same bytes. Scripts only
+/// draw charts: all else works without them.
 class Page
 {
 public:
@@ -46,7 +46,7 @@ public:
     void table(const Table& table);
     /// Adds small tables, side by side if there is room.
     void tables(const std::vector<TitledTable>& tables);
-    /// Adds a relief; none if it has neither a path nor a face.
+    /// Adds a relief; no effect if it has neither a path nor a face.
     void relief(const Relief& relief);
     /// Adds charts, side by side if there is room.
     void charts(const std::vector<Chart>& charts);

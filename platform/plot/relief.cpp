@@ -20,13 +20,13 @@ namespace
 
 using Vector = std::array<double, 3>;
 
-// The eye is to the right, in front and above. All are unit vectors, and they are perpendicular.
+// Axes of the view: perpendicular unit vectors. The eye is to the right, in front and above.
 constexpr Vector kRight{0.8192, 0.5736, 0.0};
 constexpr Vector kUp{-0.2868, 0.4096, 0.8660};
 constexpr Vector kToEye{0.4967, -0.7094, 0.5};
 
 constexpr std::size_t kShades = 8;
-constexpr std::size_t kColours = 6; ///< The first is that of nothing.
+constexpr std::size_t kColours = 6; ///< The first is for the amount 0.
 constexpr double kWidth = 1000.0;   ///< Width of a view, in its own units.
 constexpr double kNearShare = 0.4;  ///< Share of a picture below which the paths get a second view.
 
@@ -81,7 +81,7 @@ struct Frame
     }
 };
 
-/// Scale from the scene's lengths to those of the picture.
+/// Converts lengths of the scene to those of the picture.
 struct Scale
 {
     Frame frame;
@@ -243,8 +243,8 @@ std::string figure_of(const Relief& relief)
 
 std::string relief_style()
 {
-    // Each colour has a class, since in a <use> nothing is below the figure. The colours go from
-    // grey for none to the largest amount.
+    // Each colour has a class, since selectors of ancestors don't reach into a <use>. The colours
+    // go from grey for none to the largest amount.
     constexpr std::array<const char*, kColours> light{"#8a8a8a", "#3b6fb6", "#1b8a6b",
                                                       "#b07a00", "#d2521c", "#c00030"};
     constexpr std::array<const char*, kColours> dark{"#8f8f8f", "#6fa8ff", "#42d0a4",

@@ -24,18 +24,19 @@ struct Relief
 {
     std::string title;
     std::vector<std::array<Place, 3>> faces;
-    std::vector<std::vector<WayPoint>> ways; ///< Paths, each in its order, over the surfaces.
+    std::vector<std::vector<WayPoint>> ways; ///< Paths along the surfaces, points in order.
     std::string unit;                        ///< Unit of the amounts.
     std::string note;                        ///< Note below the figure; may be empty.
 
     [[nodiscard]] bool is_empty() const { return faces.empty() && ways.empty(); }
 };
 
-/// Figure of HTML that is well-formed XML, too, for a page with relief_style(). If the paths fill
-/// only a small part of it, a second view shows their surroundings. Empty without a path or a face.
+/// HTML figure that is well-formed XML, too; its page must include relief_style(). If the paths
+/// fill only a small part of the figure, a second view enlarges them. Empty text without a path or
+/// a face.
 [[nodiscard]] std::string figure_of(const Relief& relief);
 
-/// Shades of surfaces and colours of paths, light and dark.
+/// CSS rules for figures: shades of surfaces and colours of paths, for light and dark pages.
 [[nodiscard]] std::string relief_style();
 
 } // namespace tactus::plot

@@ -26,8 +26,7 @@ namespace tactus
 namespace
 {
 
-/// Text on one line. Some messages of the library end with a line end or hold lists of several
-/// lines.
+/// Text on one line. Some of CLI11's messages end with a line end or hold lists of several lines.
 std::string on_one_line(std::string text)
 {
     while (!text.empty() && text.back() == '\n')
@@ -49,8 +48,8 @@ std::string trimmed(const std::string& text)
 /// Largest size of an option file in bytes.
 constexpr std::uintmax_t kOptionFileMost = 1ULL << 20;
 
-/// Checks the file before the library opens it, because a pipe or a device may never end. Throws
-/// the reason.
+/// Checks the option file before CLI11 opens it, because reading a pipe or device may never end.
+/// Throws the reason if it can't be read; else returns an empty text.
 std::string check_option_file(const std::string& path)
 {
     if (const auto bytes = read_file(path, kOptionFileMost); !bytes)
@@ -62,12 +61,12 @@ std::string check_option_file(const std::string& path)
 
 struct FilePlace
 {
-    std::string text;    ///< FILE:LINE, or FILE if no line was found.
+    std::string text;    ///< Place as FILE:LINE; FILE if no line was found.
     bool is_pair{false}; ///< The line is KEY = VALUE.
 };
 
-/// First line with this key, or whose text before any '=' ends in it. The search begins after the
-/// line that begins the `tables`-th table of this name.
+/// Place of the first line whose text before any '=' is `key` or [`key`], or ends in a blank and
+/// `key`. If `tables` > 0, the search begins after the line of the `tables`-th [`table`].
 FilePlace place_of(const std::string& key, const std::string& path, const std::string& table = "",
                    std::size_t tables = 0)
 {
@@ -91,7 +90,8 @@ FilePlace place_of(const std::string& key, const std::string& path, const std::s
     return {path};
 }
 
-/// True if a key may be shown. The line of a wrong file, such as a password, must not be.
+/// True if `key` may appear in a message. Other text may be a secret, such as a password in a wrong
+/// file.
 bool is_like_a_name(const std::string& key)
 {
     constexpr std::size_t kLongest = 32;
@@ -100,7 +100,7 @@ bool is_like_a_name(const std::string& key)
     return key.size() <= kLongest && std::ranges::all_of(key, is_part);
 }
 
-/// Text without the value that it quotes, which may be a secret by mistake.
+/// Text with "..." for the value that it quotes, which may be a secret by mistake.
 std::string without_value(const std::string& text)
 {
     const std::size_t first = text.find('\'');
@@ -108,9 +108,20 @@ std::string without_value(const std::string& text)
     return first == last ? text : text.substr(0, first + 1) + "..." + text.substr(last);
 }
 
-/// Name of the option most similar to the key, without dashes; empty if none is similar.
-std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in_file)
+using FormerNames = std::map<std::string, std::string>;
+
+/// Message that no option is called `key`, given without dashes. It proposes the option with that
+/// former name, or else the most similar one, if any.
+std::string no_option(const CLI::App& app, const FormerNames& former, const std::string& key,
+                      bool is_in_file)
 {
+    const auto meant = [is_in_file](const std::string& name)
+    { return is_in_file ? "'" + name + "'?" : "--" + name + "?"; };
+    if (const auto found = former.find(key); found != former.end())
+    {
+        return fmt::format("{}an older version's name; {}", is_in_file ? "'" + key + "' is " : "",
+                           meant(found->second));
+    }
     std::vector<std::string_view> names;
     for (const CLI::Option* option : app.get_options())
     {
@@ -119,13 +130,15 @@ std::string nearest_name(const CLI::App& app, const std::string& key, bool is_in
             names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
         }
     }
-    return nearest_word(key, names);
+    const std::string nearest = key.empty() ? "" : nearest_word(key, names);
+    return fmt::format("no option is called {}; {}", is_in_file ? "'" + key + "'" : "so",
+                       nearest.empty() ? "see --help" : meant(nearest));
 }
 
 /// Message for an unknown key. The library's own message ends in the key, or in the name of a
 /// section and "++".
 std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error,
-                        const std::string& table)
+                        const FormerNames& former, const std::string& table)
 {
     std::string key = error.what();
     key = on_one_line(key.substr(key.rfind(' ') + 1));
@@ -142,13 +155,11 @@ std::string unknown_key(const CLI::App& app, const CLI::ConfigError& error,
     {
         return fmt::format("--config: {}: a line is KEY = VALUE", place.text);
     }
-    const std::string nearest = nearest_name(app, key, true);
-    return fmt::format("--config: {}: no option is called '{}'; {}", place.text, key,
-                       nearest.empty() ? "see --help" : "'" + nearest + "'?");
+    return fmt::format("--config: {}: {}", place.text, no_option(app, former, key, true));
 }
 
-/// Message for the first unknown word, with options before other words.
-std::string unknown_word(const CLI::App& app)
+/// Message for the first unknown option, or else for the first unknown word.
+std::string unknown_word(const CLI::App& app, const FormerNames& former)
 {
     const std::vector<std::string> words = app.remaining();
     const auto option = std::ranges::find_if(words, [](const std::string& word)
@@ -159,9 +170,7 @@ std::string unknown_word(const CLI::App& app)
     }
     const std::string name = option->substr(0, option->find('='));
     const std::string letters = name.substr(std::min(name.find_first_not_of('-'), name.size()));
-    const std::string nearest = letters.empty() ? "" : nearest_name(app, letters, false);
-    return fmt::format("{}: no option is called so; {}", name,
-                       nearest.empty() ? "see --help" : "--" + nearest + "?");
+    return fmt::format("{}: {}", name, no_option(app, former, letters, false));
 }
 
 /// Message for a wrong number of values. The library's own message begins with the option's name
@@ -202,7 +211,8 @@ public:
     }
 
 private:
-    /// Takes the item if it belongs to a table. The library marks the begin and end of tables.
+    /// Takes the item if it belongs to a table called name_. CLI11 marks the begin and end of a
+    /// table by items called "++" and "--".
     [[nodiscard]] bool try_take(const CLI::ConfigItem& item) const
     {
         const bool begins = item.name == "++";
@@ -259,7 +269,20 @@ public:
 
     [[nodiscard]] std::string make_option_desc(const CLI::Option* option) const override
     {
-        return wrapped(option->get_description(), kWidth - get_column_width());
+        const std::string value = option->get_default_str();
+        const bool is_list = value.starts_with('[');
+        const std::string shown = is_list ? value.substr(1, value.size() - 2) : value;
+        const std::string end = value.empty() ? "" : " [default: " + shown + "]";
+        return wrapped(option->get_description() + end, kWidth - get_column_width());
+    }
+
+    /// CLI11's text without the default, which make_option_desc() shows.
+    [[nodiscard]] std::string make_option_opts(const CLI::Option* option) const override
+    {
+        std::string text = CLI::Formatter::make_option_opts(option);
+        const std::string value = '=' + option->get_default_str();
+        const std::size_t at = value.size() > 1 ? text.find(value) : std::string::npos;
+        return at == std::string::npos ? text : text.erase(at, value.size());
     }
 
     [[nodiscard]] std::string make_group(std::string task, bool is_positional,
@@ -457,6 +480,11 @@ void CommandLine::add_option_tables(const std::string& name, const std::vector<s
     app_->config_formatter(std::make_shared<TableReader>(name, tables));
 }
 
+void CommandLine::add_former_name(const std::string& former, const std::string& name)
+{
+    former_names_.emplace(former, name);
+}
+
 void CommandLine::begin_task(const std::string& task, const std::string& example)
 {
     app_->option_defaults()->group(task);
@@ -470,12 +498,13 @@ void CommandLine::set_footer(const std::string& text)
 
 void CommandLine::add_log_options()
 {
-    begin_task("What is told on stderr", app_->get_name() + " ... --log-level warning --json-log");
-    add_option("--log-level", log_level_, "Only what matters as much as this")
+    begin_task("Messages on stderr", app_->get_name() + " ... --log-level warning --json-log");
+    add_option("--log-level", log_level_, "Print only messages of this level or a more severe one")
         .one_of({kLogLevelNames.begin(), kLogLevelNames.end()})
         .show_default();
     add_flag("--json-log", logs_json_,
-             "Each line as a JSON object with the keys time (UTC), level, program and text");
+             "Print each message as a JSON object with the keys time (UTC), level, program and "
+             "text");
 }
 
 void CommandLine::choose_log_style()
@@ -487,7 +516,7 @@ void CommandLine::choose_log_style()
 std::optional<int> CommandLine::parse(int argc, char** argv)
 {
     words_.assign(argv + std::min(argc, 1), argv + argc);
-    // Log style for faults of the other options.
+    // Sets the log style early, for faults of the other options.
     set_log_style({LogLevel::info, app_->get_option_no_throw("--json-log") != nullptr &&
                                        std::ranges::count(words_, "--json-log") > 0});
     if (const std::string name = option_without_value(); !name.empty())
@@ -504,7 +533,8 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     catch (const CLI::ConfigError& error)
     {
         const bool is_extra = std::string_view(error.what()).find("parse") != std::string::npos;
-        return fail(is_extra ? unknown_key(*app_, error, table_name_) : on_one_line(error.what()),
+        return fail(is_extra ? unknown_key(*app_, error, former_names_, table_name_)
+                             : on_one_line(error.what()),
                     kExitUsage);
     }
     catch (const CLI::FileError& error)
@@ -513,7 +543,7 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     }
     catch (const CLI::ExtrasError&)
     {
-        return fail(unknown_word(*app_), kExitUsage);
+        return fail(unknown_word(*app_, former_names_), kExitUsage);
     }
     catch (const CLI::ArgumentMismatch& error)
     {
@@ -533,8 +563,8 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     }
 }
 
-/// Name of an option without a value; empty if there is none. The library would take the next
-/// option for the value, also after '--option='.
+/// Name of the first option whose value is missing; empty if there is none. CLI11 would take the
+/// next option for the value, also after '--option='.
 std::string CommandLine::option_without_value() const
 {
     const auto named = [this](const std::string& word)
@@ -600,7 +630,7 @@ std::string CommandLine::place_in_file(const std::string& text) const
     }
     const auto path = file->as<std::string>();
     const std::string place = place_of(name.substr(2), path).text;
-    return place == path ? "" : place + ": "; // Else the option has no line in the file.
+    return place == path ? "" : place + ": "; // Otherwise the option has no line in the file.
 }
 
 /// Sets the place of each key of the tables. Returns the first fault; empty if there is none.

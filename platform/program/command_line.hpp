@@ -5,6 +5,7 @@
 #include "transport/base/exit_codes.hpp"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,12 +25,12 @@ struct TableEntry
 {
     std::string key;
     std::string value; ///< Value; a list is one text with commas.
-    std::string place; ///< FILE:LINE.
+    std::string place; ///< Place as FILE:LINE.
 };
 using OptionTable = std::vector<TableEntry>;
 
-/// Declared option, for further settings. Each function returns the option itself. The command line
-/// must outlive it.
+/// Handle of a declared option, for further settings. Each function returns a copy of the handle.
+/// The command line must outlive it.
 class CommandOption
 {
 public:
@@ -38,7 +39,7 @@ public:
     CommandOption required() const;
     CommandOption needs(CommandOption other) const;
     CommandOption excludes(CommandOption other) const;
-    /// Shows the present value of the variable in --help.
+    /// Shows the variable's present value as the default in --help.
     CommandOption show_default() const;
 
     /// Accepts numbers from `least` to `most`, both included, and no NaN.
@@ -48,16 +49,16 @@ public:
     CommandOption integer_between(T least, T most) const;
     CommandOption one_of(std::vector<std::string> names) const;
     CommandOption existing_directory() const;
-    /// Refuses a value if `fault_in` returns its fault, not an empty text. --help shows `form`.
+    /// Refuses a value for which `fault_in` returns a text, the fault. --help shows `form`.
     CommandOption check(std::function<std::string(const std::string&)> fault_in,
                         const std::string& form = "") const;
 
-    /// Makes a list with one value for each use of the option.
+    /// Makes the option's value a list, with one value for each use of the option.
     CommandOption repeatable() const;
-    /// Makes a list of all values, also of several after one use of the option.
+    /// Makes the option's value a list; each use of the option may have several values.
     CommandOption repeatable_with_more() const;
     CommandOption separated_by(char delimiter) const;
-    /// Excludes the option from the option file, for reading and for printing.
+    /// Excludes the option from option files, both read and printed ones.
     CommandOption not_in_file() const;
 
 private:
@@ -86,13 +87,17 @@ public:
     /// dashes. The command line overrides the file. An unknown key is wrong usage; an unreadable
     /// file is not.
     void add_option_file(const std::string& name, const std::string& description);
-    /// Allows tables `[[name]]` with some of these keys in the option file. Parsing appends them to
-    /// `tables`, which must live as long. Any other key is wrong usage.
+    /// Allows tables `[[name]]` in the option file, with any of these keys; other keys are wrong
+    /// usage. Parsing appends the tables to `tables`, which must outlive the command line.
     void add_option_tables(const std::string& name, const std::vector<std::string>& keys,
                            std::vector<OptionTable>& tables);
     /// Adds --log-level and --json-log for the lines on stderr. parse() applies them.
     void add_log_options();
-    /// Begins a task: --help shows the options declared after this call under it, with the example.
+    /// Declares that the option `name` was called `former` in an older version, both without
+    /// dashes. Use of the former name is wrong usage, and the message gives the new one.
+    void add_former_name(const std::string& former, const std::string& name);
+    /// Begins a task, a section of --help: the options declared after this call stand in it, below
+    /// the example.
     void begin_task(const std::string& task, const std::string& example);
     /// Sets the text below the options of --help. Lines that begin with a blank are not wrapped.
     void set_footer(const std::string& text);
@@ -105,12 +110,12 @@ public:
     /// Names of the given options, in the order of declaration.
     [[nodiscard]] std::vector<std::string> given() const;
     [[nodiscard]] bool is_given(const std::string& name) const;
-    /// Options with their present values, as an option file.
+    /// Text of an option file with all options and their present values.
     [[nodiscard]] std::string option_file_text() const;
 
-    /// Writes one line on stderr, with the program's name and the reason of a failure. Returns
-    /// `code`. Control characters, for instance of file names, are shown as '?'. If a usage error
-    /// begins with an option of the option file, its place there is put first.
+    /// Writes one line on stderr with the program's name and the text, and returns `code`. Control
+    /// characters, for instance of file names, are shown as '?'. If the text of a usage error
+    /// begins with an option of the option file, the line's place there is put first.
     int fail(const std::string& text, int code = kExitFailed) const;
 
 private:
@@ -126,6 +131,8 @@ private:
     std::string table_name_;              ///< Empty: the option file has no tables.
     std::vector<std::string> table_keys_; ///< Allowed keys of a table.
     std::vector<OptionTable>* tables_{nullptr};
+    /// New name by former name, both without dashes.
+    std::map<std::string, std::string> former_names_;
     std::unique_ptr<CLI::App> app_;
 };
 

@@ -10,7 +10,7 @@ namespace tactus::hrtc
 
 Refusal interruption()
 {
-    return {"interrupted; nothing is judged"};
+    return {"interrupted; there is no verdict"};
 }
 
 int leave_with(const Refusal& error)

@@ -7,7 +7,7 @@
 namespace tactus::hrtc
 {
 
-/// Refusal to judge a run that a signal has ended.
+/// Refusal of a result for a run that a signal has ended.
 [[nodiscard]] Refusal interruption();
 
 /// Logs `error` as an error of hrtc. Returns the exit code.

@@ -9,7 +9,7 @@
 namespace tactus
 {
 
-/// Largest number of bytes of a change.
+/// Largest coded sizes in bytes: of a pose, of an object's specification, and of a whole change.
 inline constexpr std::size_t kObjectPoseBytes = 124;
 inline constexpr std::size_t kObjectSpecBytes = 60;
 inline constexpr std::size_t kSceneChangeBytes = 9 + kObjectSpecBytes + kObjectPoseBytes;

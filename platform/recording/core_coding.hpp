@@ -17,7 +17,7 @@ namespace tactus
 using HullVertices = std::vector<std::shared_ptr<const std::vector<Vec3>>>;
 
 /// Appends a tool's core: a byte for its kind, and its numbers (docs/recording.md). A core given
-/// only by its support function has none, since that is code.
+/// only by a support function can't be coded, since the function is code (asserted).
 void append_core(std::vector<std::byte>& bytes, const ToolCore& core);
 
 /// Reads a core. None if the kind is unknown, a length is not within -1e6 to 1e6 m, or a hull has

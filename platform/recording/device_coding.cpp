@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// Flags: the first four are values, the others announce fields that follow in this order.
+/// Flags: the first four are values, all later ones announce fields that follow in this order.
 enum ToolFlag : std::uint16_t
 {
     kIsValid = 1U << 0U,
@@ -20,7 +20,7 @@ enum ToolFlag : std::uint16_t
     kIsHeld = 1U << 2U,
     kMeasuresRotation = 1U << 3U,
     kHasRotation = 1U << 4U,
-    kHasHand = 1U << 5U,
+    kHasPose = 1U << 5U,
     kHasVelocity = 1U << 6U,
     kHasAngularVelocity = 1U << 7U,
     kHasButtons = 1U << 8U,
@@ -41,7 +41,7 @@ std::uint16_t flags_of(const ToolState& tool, const DeviceRecord& device) noexce
     set(device.deadman_held, kIsHeld);
     set(device.measures_rotation, kMeasuresRotation);
     set(tool.rotation != Mat3::Identity(), kHasRotation);
-    set(device.hand.has_value(), kHasHand);
+    set(device.pose.has_value(), kHasPose);
     set(device.velocity_m_per_s.has_value(), kHasVelocity);
     set(device.angular_velocity_rad_per_s.has_value(), kHasAngularVelocity);
     set(device.buttons != 0, kHasButtons);
@@ -65,10 +65,10 @@ void write_tool(FixedWriter& writer, const ToolState& tool, const DeviceRecord& 
     {
         writer.write_rotation(tool.rotation);
     }
-    if (device.hand)
+    if (device.pose)
     {
-        writer.write_vector(device.hand->position_m);
-        writer.write_rotation(device.hand->rotation);
+        writer.write_vector(device.pose->position_m);
+        writer.write_rotation(device.pose->rotation);
     }
     for (const std::optional<Vec3>& velocity :
          {device.velocity_m_per_s, device.angular_velocity_rad_per_s})
@@ -117,11 +117,11 @@ bool try_read_tool(ByteReader& reader, ToolState& tool, DeviceRecord& device)
     {
         tool.rotation = read_rotation(reader);
     }
-    if (has(kHasHand))
+    if (has(kHasPose))
     {
-        DevicePose& hand = device.hand.emplace();
-        hand.position_m = read_vector(reader);
-        hand.rotation = read_rotation(reader);
+        DevicePose& pose = device.pose.emplace();
+        pose.position_m = read_vector(reader);
+        pose.rotation = read_rotation(reader);
     }
     if (has(kHasVelocity))
     {

@@ -12,14 +12,14 @@
 namespace tactus
 {
 
-/// Largest size of a tool and its device in a coded frame.
+/// Largest coded size of a tool's state and its device's record, in bytes.
 inline constexpr std::size_t kToolStateBytes = 38 + 72 + 96 + 24 + 24 + 4 + 8 + 24 + 24 + 8;
 
 /// Writes a tool's state and its device's record, in the format of docs/recording.md.
 void write_tool(FixedWriter& writer, const ToolState& tool, const DeviceRecord& device) noexcept;
 
-/// Reads a tool. False if the flags are inconsistent; absent values are not stored. The reader
-/// reports missing bytes.
+/// Reads a tool. Absent values become none, zero or the identity. False if the flags don't match
+/// the values; the reader reports missing bytes.
 [[nodiscard]] bool try_read_tool(ByteReader& reader, ToolState& tool, DeviceRecord& device);
 
 } // namespace tactus

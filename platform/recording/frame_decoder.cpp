@@ -47,7 +47,7 @@ const char* FrameDecoder::decode(ByteReader& reader)
     {
         return fault;
     }
-    return body.failed() || !body.at_end() ? "has another size than its content" : nullptr;
+    return body.failed() || !body.at_end() ? "has a size that differs from its content" : nullptr;
 }
 
 const char* FrameDecoder::decode_body(ByteReader& reader)
@@ -60,19 +60,19 @@ const char* FrameDecoder::decode_body(ByteReader& reader)
     }
     if (has_begun_ && !frame_.has_hashes && (flags & kHasNoHashes) == 0)
     {
-        return "has hashes behind one without";
+        return "has hashes, but the frame before has none";
     }
     frame_.has_hashes = (flags & kHasNoHashes) == 0;
     has_begun_ = true;
     frame_.now_ns = reader.read<std::int64_t>();
     if (!decode_tools(reader))
     {
-        return "has a tool whose flags are not those of what it says";
+        return "has a tool whose flags do not match its data";
     }
     frame_.changes.clear();
     if ((flags & kHasChanges) != 0 && !decode_changes(reader))
     {
-        return "has not 1 to 64 changes of the scene, or one of unknown kind";
+        return "does not have 1 to 64 changes of the scene, or has one of unknown kind";
     }
     if ((flags & kHasBudgets) != 0)
     {

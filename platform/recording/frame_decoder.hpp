@@ -30,9 +30,9 @@ struct RecordedFrame
     std::vector<SceneChange> changes;
     Budgets budgets;
     std::uint32_t request_room{0};
-    std::vector<QueueEvent> events; ///< Events taken from the queues.
+    std::vector<QueueEvent> events; ///< Events that the frame took from the queues.
     bool has_hashes{true};          ///< False if the frame failed, or only its input was kept.
-    std::vector<std::uint64_t> state_hashes; ///< Hashes, one a model, after the frame.
+    std::vector<std::uint64_t> state_hashes; ///< State hash of each model after the frame.
     OutputHashes output;
 
     [[nodiscard]] FrameInput input() const noexcept { return {tools, changes, budgets, now_ns}; }
@@ -45,8 +45,8 @@ class FrameDecoder
 public:
     explicit FrameDecoder(const FrameShape& shape);
 
-    /// Reads the next frame into frame(). Returns null, or the fault, in words that follow
-    /// "frame N: ".
+    /// Reads the next frame into frame(). Returns null, or the fault in words that follow "frame
+    /// N".
     [[nodiscard]] const char* decode(ByteReader& reader);
     [[nodiscard]] const RecordedFrame& frame() const noexcept { return frame_; }
 

@@ -28,13 +28,13 @@ inline constexpr std::size_t kMaxCodedFrameBytes =
     kBudgetsBytes + 4 + 2 + kMaxQueueEvents * kQueueEventBytes + kMaxModels * 8 +
     sizeof(OutputHashes);
 
-/// Flags of a frame: scene changes follow; budgets follow, since they differ from the frame before;
-/// no hashes follow, since the frame failed or only its input is kept.
+/// Flags of a frame, in this order: scene changes follow; budgets follow, since they differ from
+/// those of the frame before; no hashes follow, since the frame failed or only its input is kept.
 inline constexpr std::uint8_t kHasChanges = 1;
 inline constexpr std::uint8_t kHasBudgets = 2;
 inline constexpr std::uint8_t kHasNoHashes = 4;
 
-/// Input of a frame.
+/// Input of a frame, including the events that it takes from the queues.
 struct GivenFrame
 {
     FrameInput input;
@@ -47,8 +47,9 @@ struct GivenFrame
 class FrameEncoder
 {
 public:
-    /// Encodes input, with at most kMaxSceneChanges changes, and output of one Frame::run(); valid
-    /// until the next call. `devices`: one a tool, or empty without devices.
+    /// Encodes input, with up to kMaxSceneChanges changes (asserted), and output of one
+    /// Frame::run(). The result is valid until the next call. `devices`: one record a tool, or
+    /// empty without devices.
     [[nodiscard]] std::span<const std::byte>
     encode(const FrameInput& input, const FrameOutput& output,
            std::span<const DeviceRecord> devices = {}) noexcept;

@@ -22,22 +22,22 @@ namespace tactus
 class FrameTap
 {
 public:
-    /// Capacity of `cells` of 64 B; a frame of one tool and model takes 3 to 8, an object that its
-    /// host moves 2 more, an arrival a third.
+    /// `cells`: capacity in cells of 64 bytes. A frame of one tool and one model takes 3 to 8
+    /// cells. Each object that its server moves takes 2 more, each arrival a third of one.
     explicit FrameTap(std::size_t cells = kUsualCells);
 
     /// Capacity for a second or more of usual frames: 1 MiB.
     static constexpr std::size_t kUsualCells = 16'384;
 
-    /// Haptic thread, after each run: records a frame. Allocates nothing. At most kMaxSceneChanges
-    /// changes; `devices`: one a tool, or empty.
+    /// Haptic thread, after each run: records a frame with up to kMaxSceneChanges changes.
+    /// Allocates nothing. `devices`: one record a tool, or empty.
     void record(const FrameInput& input, const FrameOutput& output,
                 std::span<const DeviceRecord> devices = {}) noexcept;
-    /// Records a frame that failed, the last. Allocates nothing. Any thread once the haptic one
-    /// records no more.
+    /// Records the input of a frame that failed, as the last one. Any thread, once the haptic
+    /// thread records no more. Allocates nothing.
     void record_failed(const GivenFrame& frame) noexcept;
 
-    /// One other thread: reads the next frame, as FrameEncoder coded it; false if there is none.
+    /// Writing thread: takes the next frame, as FrameEncoder coded it; false if there is none.
     /// Allocates.
     [[nodiscard]] bool try_take(std::vector<std::byte>& frame);
 

@@ -15,22 +15,23 @@
 namespace tactus
 {
 
-/// Device poses of the last frames, for a failure in a run without a recording. They are coded only
-/// on request: coding would cost the haptic thread ten times as much.
+/// Inputs of the last frames, kept for a failure in a run without a recording. Only write_to()
+/// encodes them: encoding would cost the haptic thread ten times as much.
 class LastInputs
 {
 public:
-    /// Number of samples: some seconds of one tool, 2 MiB.
+    /// Default capacity: 4 s of one tool at 1 kHz, 2 MiB.
     static constexpr std::size_t kUsualSamples = 4'096;
 
-    /// `samples`: number of samples of all tools.
+    /// `samples`: capacity, counted in samples of single tools; at least one frame is kept.
     explicit LastInputs(std::size_t tools, std::size_t samples = kUsualSamples);
 
-    /// Haptic thread, after each run: keeps a frame and drops the oldest. Allocates nothing.
-    /// `devices`: one a tool. Scene changes are left out.
+    /// Haptic thread, after each run: keeps a frame without its scene changes; if full, drops the
+    /// oldest. Allocates nothing. `devices`: one record a tool.
     void keep(const FrameInput& input, std::span<const DeviceRecord> devices) noexcept;
 
-    /// Any thread except the haptic one, once no more frames are kept: codes all, in order.
+    /// Any thread except the haptic one, once no more frames are kept: adds all kept frames to
+    /// `writer`, oldest first.
     void write_to(RecordingWriter& writer) const;
 
 private:
@@ -42,9 +43,9 @@ private:
 
     std::size_t tools_;
     std::vector<Frame> frames_;
-    std::vector<ToolState> states_; ///< States, those of a frame in a row, like devices_.
+    std::vector<ToolState> states_; ///< States, `tools_` a frame; devices_ has the same order.
     std::vector<DeviceRecord> devices_;
-    std::size_t next_{0}; ///< Index of the next frame.
+    std::size_t next_{0}; ///< Index of the frame that is overwritten next.
     bool is_full_{false};
 };
 

@@ -78,7 +78,7 @@ std::uint64_t hash_tools(std::span<const ToolOutput> tools) noexcept
         hash.add(tool.stiffness_n_per_m);
         hash.add(tool.lag_m);
         hash.add(tool.object_way_m);
-        hash.add(tool.object_turn_rad);
+        hash.add(tool.object_rotation_rad);
         hash.add(tool.carried_m);
         hash.add(tool.carried_rad);
         hash.add(static_cast<std::uint64_t>(tool.sample_fault));

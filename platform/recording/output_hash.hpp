@@ -9,8 +9,8 @@
 namespace tactus
 {
 
-/// 64-bit hashes of the parts of a FrameOutput, field by field: every value is included with all
-/// its bits, padding is not. Two frames with equal hashes have given the same bytes.
+/// 64-bit hashes of the parts of a FrameOutput, over all bits of every field, without padding.
+/// Frames with equal hashes have given the same values.
 struct OutputHashes
 {
     std::uint64_t tools{0};

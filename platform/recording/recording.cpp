@@ -38,8 +38,8 @@ std::string Recording::missing() const
 {
     if (cut_at_)
     {
-        return "the file was cut: behind frame " + std::to_string(frame_count_ - 1) + ", at byte " +
-               std::to_string(*cut_at_) + ", no section is whole";
+        return "the file is incomplete: after frame " + std::to_string(frame_count_ - 1) +
+               ", at byte " + std::to_string(*cut_at_) + ", no section is complete";
     }
     return lost_from_ == kNoFrame
                ? ""

@@ -22,9 +22,9 @@
 namespace tactus
 {
 
-/// A recording in memory, checked completely: every section's checksum, every count and range, and
-/// that each piece that a frame takes precedes it. Of a truncated file it has the frames up to the
-/// last whole section.
+/// A recording in memory. Parsing has checked every section's checksum, every count and range, and
+/// that each piece precedes the frame that takes it. If the file was truncated, it has the frames
+/// up to the last whole section.
 class Recording
 {
 public:
@@ -67,7 +67,7 @@ private:
     std::map<PieceKey, std::vector<std::byte>> pieces_;
     std::vector<std::byte> frames_;
     std::uint64_t frame_count_{0};
-    std::uint64_t failed_frames_{0}; ///< Number of frames without hashes, the last ones.
+    std::uint64_t failed_frames_{0}; ///< Number of frames without hashes, all at the end.
     std::uint64_t lost_from_{kNoFrame};
     std::optional<std::size_t> cut_at_;
 };

@@ -37,10 +37,10 @@ enum class SectionKind : std::uint32_t
 
 /// Size of a section's header: kind, payload bytes, CRC-32C of those two and the payload.
 inline constexpr std::size_t kSectionHeaderBytes = 12;
-/// Limit of a frames section, so that a damaged length is detected.
+/// Most bytes of a frames section, so that a damaged length is detected.
 inline constexpr std::uint32_t kMaxFramesSectionBytes = 1U << 20U;
 
-/// A model as it was when the frame was made.
+/// Model as it was given to the frame at the start of the run.
 struct RecordedModel
 {
     ModelCapacities capacities;
@@ -48,7 +48,7 @@ struct RecordedModel
     std::vector<std::byte> base;   ///< Coded base mesh; empty: a streamed model.
 };
 
-/// Key of a name: a model, or an object by number and generation.
+/// Key of a name: a model by its number, or an object by number and generation.
 struct RecordedName
 {
     enum class Kind : std::uint8_t
@@ -71,7 +71,7 @@ struct RecordedSetup
     Prediction prediction{Prediction::automatic};
     double force_tolerance_n{0.0};
     std::vector<ToolSpec> tools;
-    HullVertices hull_vertices; ///< Hull vertices of tools that were read from a recording.
+    HullVertices hull_vertices; ///< Owner of the hull vertices in `tools`, if read from a file.
     std::vector<ObjectSpec> objects;
     std::vector<ObjectPose> poses; ///< Poses, one an object.
     SceneCapacities capacities;
@@ -80,13 +80,13 @@ struct RecordedSetup
     /// Names of models and objects, also of objects added later; at most kMaxRecordedNameBytes
     /// each.
     std::map<RecordedName, std::string> names;
-    /// Build and kernels of the recording program, to explain a difference. At most
+    /// Build and kernels of the recording program, to explain a difference; at most
     /// kMaxRecordedNameBytes each.
     std::string compiler;
     std::string architecture;
     std::string kernels;
 
-    /// Name; empty if there is none.
+    /// Name of a model or object; empty if there is none.
     [[nodiscard]] std::string name_of(const RecordedName& what) const
     {
         const auto found = names.find(what);
@@ -95,12 +95,12 @@ struct RecordedSetup
 };
 
 inline constexpr std::size_t kMaxRecordedNameBytes = 63;
-/// Size of the largest base mesh that a host serves.
+/// Size of the largest base mesh that a server serves.
 inline constexpr std::size_t kMaxRecordedBaseBytes = std::size_t{1} << 20U;
 /// Largest `hrtc --pool-mib`; a recording that needs more is damaged.
 inline constexpr std::size_t kMaxRecordedPoolBytes = std::size_t{4'096} << 20U;
 
-/// Number for a recording without lost frames.
+/// Value of Recording::lost_from() if no frame was lost.
 inline constexpr std::uint64_t kNoFrame = std::numeric_limits<std::uint64_t>::max();
 
 /// Build of this program: compiler and optimisation, processor.

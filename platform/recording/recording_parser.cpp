@@ -5,6 +5,7 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/crc32c.hpp"
 #include "rt_core/frame/model.hpp"
+#include "transport/base/counted.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <algorithm>
@@ -18,17 +19,18 @@ namespace tactus
 namespace
 {
 
-/// Number of zeros at the end of the file that show an incomplete section. A complete section has
-/// fewer: an end section has 12 at most.
+/// Number of zero bytes at the end of a file that shows an incomplete section. A complete section
+/// has fewer: an end section has 12 at most.
 constexpr std::size_t kLostZeros = 512;
-/// A length above this is damaged; a model's header and base mesh have 8 MiB and 1 MiB.
+/// Longest section except frames; a greater length is damaged. A model section has at most 8 MiB of
+/// header and 1 MiB of base mesh.
 constexpr std::size_t kMaxOtherSectionBytes = std::size_t{16} << 20U;
 
 constexpr const char* kNotARecording = "is not a Tactus recording: it doesn't begin with TACTREC";
 
 } // namespace
 
-/// Reads the sections once. Every parse_ function returns the fault, if any.
+/// Reads the sections of a file once, in order. Every parse_ function returns the fault, if any.
 class RecordingParser
 {
 public:
@@ -54,8 +56,8 @@ public:
         }
         else if (!fault && at_ != bytes_.size())
         {
-            fault = "the end section is followed by " + std::to_string(bytes_.size() - at_) +
-                    " bytes; nothing may follow it";
+            fault = counted(bytes_.size() - at_, "byte") +
+                    " after the end section, which must be the last";
         }
         if (fault)
         {
@@ -88,7 +90,8 @@ private:
         {
             at_ = kRecordingMagic.size();
             return "format version " + std::to_string(version) +
-                   (version < kRecordingVersion ? " is of an older Tactus" : " is unknown") +
+                   (version < kRecordingVersion ? " is from an older version of Tactus"
+                                                : " is unknown") +
                    "; this program reads " + std::to_string(kRecordingVersion);
         }
         at_ = kRecordingPrologueBytes;
@@ -126,7 +129,7 @@ private:
     {
         if (recording_.frame_count_ == 0)
         {
-            return "the file is cut short: no frame is whole";
+            return "the file is cut short: no frame is complete";
         }
         recording_.cut_at_ = at_;
         return std::nullopt;
@@ -134,8 +137,9 @@ private:
 
     [[nodiscard]] std::string cut_short(std::size_t needed) const
     {
-        return "the file is cut short: " + std::to_string(needed) + " bytes are needed here and " +
-               std::to_string(bytes_.size() - at_) + " are left";
+        return "the file is cut short: " + std::to_string(needed) +
+               " bytes are needed at this point, but " + std::to_string(bytes_.size() - at_) +
+               " are left";
     }
 
     Fault parse_section()
@@ -151,8 +155,8 @@ private:
         }
         if (size > reader.remaining())
         {
-            return "section of kind " + std::to_string(kind) + " says that it has " +
-                   std::to_string(size) + " bytes; " + std::to_string(reader.remaining()) +
+            return "section of kind " + std::to_string(kind) + " states a size of " +
+                   std::to_string(size) + " bytes, but " + std::to_string(reader.remaining()) +
                    " are left";
         }
         std::vector<std::byte> covered(rest.begin(), rest.begin() + 8);
@@ -161,7 +165,7 @@ private:
         if (crc32c(covered) != checksum)
         {
             return "section of kind " + std::to_string(kind) + " and " + std::to_string(size) +
-                   " bytes is damaged: its checksum does not fit";
+                   " bytes is damaged: its checksum does not match";
         }
         if (Fault fault = parse_payload(static_cast<SectionKind>(kind), payload))
         {
@@ -178,7 +182,7 @@ private:
         if (wants_setup != (kind == SectionKind::setup) ||
             (!wants_setup && wants_model != (kind == SectionKind::model)))
         {
-            return "a section is out of order: the setup comes first, then " +
+            return "a section is out of order; the order is setup, " +
                    std::to_string(model_count_) + " models, then names, pieces and frames";
         }
         switch (kind)
@@ -211,8 +215,8 @@ private:
         static_cast<void>(pools);
         if (measuring.used() > pool_bytes_left_)
         {
-            return "the pools of models that come and go need more than " +
-                   std::to_string(kMaxRecordedPoolBytes >> 20U) + " MiB, which is the most allowed";
+            return "the pools of streamed models need more than " +
+                   std::to_string(kMaxRecordedPoolBytes >> 20U) + " MiB, the most allowed";
         }
         pool_bytes_left_ -=
             recording_.setup_.for_streamed_models.base_cells > 0 ? measuring.used() : 0;
@@ -257,8 +261,8 @@ private:
                                    : is_base && is_streamed_model(model) && number == 0);
         if (!is_known)
         {
-            return "a piece is not a chunk or index page of one of the recording's models, nor the "
-                   "base mesh of one that comes and goes";
+            return "a piece is neither a chunk or index page of a model of the recording, nor the "
+                   "base mesh of a streamed model";
         }
         const std::size_t most = is_base ? kMaxRecordedBaseBytes : kMaxCodedChunkBytes;
         if (bytes.empty() || bytes.size() > most)
@@ -295,7 +299,7 @@ private:
             if (!fault && recording_.failed_frames_ > 1 &&
                 recording_.failed_frames_ <= recording_.frame_count_)
             {
-                fault = "is behind one that failed";
+                fault = "follows a failed frame";
             }
             if (fault)
             {
@@ -306,7 +310,7 @@ private:
         return std::nullopt;
     }
 
-    /// Each arrival must have been recorded before.
+    /// Checks that the slots of all events exist, and that each arriving piece was recorded before.
     Fault check_pieces(const RecordedFrame& frame) const
     {
         std::uint64_t pages = recording_.setup_.for_streamed_models.pages;
@@ -324,14 +328,15 @@ private:
                                             : recording_.setup_.for_streamed_models.base_cells;
             if (event.slot >= slots)
             {
-                return "names slot " + std::to_string(event.slot) + " of " + std::to_string(slots);
+                return "refers to slot " + std::to_string(event.slot) + ", but the slot count is " +
+                       std::to_string(slots);
             }
             if (event.kind != QueueEventKind::base_back &&
                 recording_.piece(event.owner, event.key).empty())
             {
                 return "takes piece " + std::to_string(event.key.number) + " of model " +
                        std::to_string(event.owner) +
-                       " from the queues, which is not in the recording before it";
+                       " from the queues, but the piece is not in the recording before it";
             }
         }
         return std::nullopt;
@@ -349,15 +354,15 @@ private:
         }
         if (frames != recording_.frame_count_ || pieces != recording_.pieces_.size())
         {
-            return "the end states " + std::to_string(frames) + " frames and " +
-                   std::to_string(pieces) + " pieces, but " +
+            return "the end section states " + counted(frames, "frame") + " and " +
+                   counted(pieces, "piece") + ", but the file has " +
                    std::to_string(recording_.frame_count_) + " and " +
-                   std::to_string(recording_.pieces_.size()) + " came before";
+                   std::to_string(recording_.pieces_.size());
         }
         if (recording_.lost_from_ != kNoFrame && recording_.lost_from_ != frames)
         {
-            return "the first lost frame is " + std::to_string(recording_.lost_from_) + "; after " +
-                   std::to_string(frames) + " frames only that number is allowed";
+            return "the first lost frame is " + std::to_string(recording_.lost_from_) +
+                   ", but must be " + std::to_string(frames);
         }
         has_end_ = true;
         return std::nullopt;

@@ -27,15 +27,15 @@ public:
     /// Adds a name of a model or object, at any time.
     void add_name(const RecordedName& what, std::string_view name);
 
-    /// Adds a coded chunk or index page of one of the set-up's models; later ones under the same
-    /// key are the same and left out.
+    /// Adds a coded chunk, index page or base mesh of one of the setup's models. A second piece
+    /// under the same key must be the same, and is left out.
     void add_piece(std::uint32_t model, ContentKey key, std::span<const std::byte> bytes);
 
     /// Adds one frame as coded by FrameEncoder.
     void add_frame(std::span<const std::byte> coded);
 
     /// Closes the recording, once, as the last call except take_bytes(). `lost_from`: the first
-    /// frame that is not in it, otherwise kNoFrame.
+    /// frame that was lost; kNoFrame: none.
     void finish(std::uint64_t lost_from);
 
     [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }

@@ -4,6 +4,7 @@
 
 #include "platform/recording/replay_queues.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "transport/base/counted.hpp"
 
 #include <algorithm>
 #include <array>
@@ -33,7 +34,7 @@ public:
                 Frame::start(replayed->frame_, *replayed->arena_, replayed->setup_);
             !started)
         {
-            return Refusal{std::string("no frame can be made of the recording's setup: ") +
+            return Refusal{std::string("no frame can be created from the recording's setup: ") +
                            refusal_text(started.error())};
         }
         replayed->queues_.emplace(recording, *replayed->frame_);
@@ -41,7 +42,7 @@ public:
     }
 
     [[nodiscard]] Frame& frame() noexcept { return *frame_; }
-    /// Difference in this frame, if any.
+    /// Runs one frame and returns its difference from the recording, if any.
     [[nodiscard]] std::optional<std::string> step(const RecordedFrame& recorded,
                                                   std::uint64_t number, const ReplayWatch& watch)
     {
@@ -58,8 +59,9 @@ public:
         {
             watch.ends(number, recorded, output);
         }
-        return recorded.has_hashes ? compare(output, recorded)
-                                   : std::optional<std::string>("it failed in the run, not here");
+        return recorded.has_hashes
+                   ? compare(output, recorded)
+                   : std::optional<std::string>("it failed in the run, but not in the replay");
     }
 
 private:
@@ -98,7 +100,7 @@ private:
         {
             if (output.models[i].state_hash != recorded.state_hashes[i])
             {
-                return "model " + std::to_string(i) + ": other faces are active (state hash)";
+                return "model " + std::to_string(i) + ": different faces are active (state hash)";
             }
         }
         const OutputHashes hashes = hash_output(output);
@@ -110,7 +112,7 @@ private:
         const auto* const part =
             std::find_if(parts.begin(), parts.end(), [](const auto& one) { return !one.first; });
         return part == parts.end() ? std::nullopt
-                                   : std::optional(std::string("other ") + part->second);
+                                   : std::optional(std::string("different ") + part->second);
     }
 
     std::vector<ModelSource> sources_;
@@ -128,9 +130,9 @@ Result<ReplayReport, Refusal> replay(const Recording& recording, const Kernels* 
 {
     if (!recording.keeps_run())
     {
-        return Refusal{"keeps what the last " + std::to_string(recording.frame_count()) +
-                       " frames of a run that failed were given, not the run: as a device, "
-                       "replay:FILE, it moves the hand again"};
+        return Refusal{"can't be replayed: it holds only the last " +
+                       counted(recording.frame_count(), "frame") +
+                       " of a failed run; use it as --device replay:FILE"};
     }
     auto replayed = ReplayedFrame::create(recording, kernels);
     if (!replayed)
@@ -168,15 +170,15 @@ Result<ReplayReport, Refusal> replay(const Recording& recording, const Kernels* 
 std::string replay_line(const Recording& recording, const ReplayReport& report)
 {
     const RecordedSetup& setup = recording.setup();
-    std::string line = report.difference
-                           ? "frame " + std::to_string(report.difference->frame) +
-                                 " differs: " + report.difference->text
-                           : std::to_string(report.frames) + " frames agree bit for bit";
+    std::string line =
+        report.difference ? "frame " + std::to_string(report.difference->frame) +
+                                " differs: " + report.difference->text
+                          : counted(report.frames, "frame agrees", "frames agree") + " bit for bit";
     line += "; recorded by " + setup.compiler + ", " + setup.architecture + ", kernels " +
             setup.kernels;
     if (recording.has_failed() && !report.difference)
     {
-        line += "; the frame after them failed in the run";
+        line += "; the next frame failed in the run";
     }
     if (const std::string missing = recording.missing(); !missing.empty())
     {

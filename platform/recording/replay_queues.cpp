@@ -38,7 +38,7 @@ ReplayQueues::Fault ReplayQueues::replay(const QueueEvent& event)
                                                             : update(event);
     if (!fault && !frame_.pools().cache.queues.arrived.try_push(event))
     {
-        fault = "more waits in the queues than they have room for";
+        fault = "the queues have too little room";
     }
     return fault;
 }
@@ -56,7 +56,7 @@ ReplayQueues::Fault ReplayQueues::arrive(const QueueEvent& event)
     if (event.key.kind == ContentKind::chunk &&
         frame_.model({event.owner}).linker.linked(event.slot) != event.linked)
     {
-        return "other records of chunk " + std::to_string(event.key.number) + " are linked";
+        return "different records of chunk " + std::to_string(event.key.number) + " are linked";
     }
     return std::nullopt;
 }
@@ -67,7 +67,8 @@ ReplayQueues::Fault ReplayQueues::update(const QueueEvent& event)
     if (filled.id != ChunkId{event.key.number} || filled.model != event.owner ||
         frame_.model({event.owner}).linker.linked(event.slot) != event.linked)
     {
-        return "other records of chunk " + std::to_string(event.key.number) + " are linked later";
+        return "different records of chunk " + std::to_string(event.key.number) +
+               " are linked later";
     }
     return std::nullopt;
 }
@@ -77,13 +78,14 @@ ReplayQueues::Fault ReplayQueues::give_back(const QueueEvent& event)
     Fault fault = take_back_freed(event.freed_taken);
     if (!fault && !has_cells_for(event))
     {
-        fault = "cells are given back that weren't lent";
+        fault = "cells are returned that were not lent";
     }
     gives_cells_back_[event.owner] = true;
     return fault;
 }
 
-/// Cells that were given back may be lent again only once the frame has acknowledged it.
+/// True if the frame has lent the cells of this event for a base mesh. Cells that were given back
+/// may be lent again only once the frame has acknowledged it.
 bool ReplayQueues::has_cells_for(const QueueEvent& event) const
 {
     const Model& model = frame_.model({event.owner});
@@ -91,7 +93,8 @@ bool ReplayQueues::has_cells_for(const QueueEvent& event) const
            !gives_cells_back_[event.owner];
 }
 
-/// Linking visits every resident page, so a page is removed exactly where it was in the recording.
+/// Takes back freed slots up to the number `freed_taken`. Linking depends on the resident pages, so
+/// a page is removed exactly where it was in the recording.
 ReplayQueues::Fault ReplayQueues::take_back_freed(std::uint32_t freed_taken)
 {
     for (; freed_taken_ != freed_taken; ++freed_taken_)
@@ -99,7 +102,7 @@ ReplayQueues::Fault ReplayQueues::take_back_freed(std::uint32_t freed_taken)
         FreedSlot freed;
         if (!frame_.pools().cache.queues.freed.try_pop(freed))
         {
-            return "fewer slots were given back";
+            return "fewer slots were returned";
         }
         if (freed.kind == ContentKind::base)
         {
@@ -134,14 +137,14 @@ ReplayQueues::Fault ReplayQueues::fill(const QueueEvent& event)
     }
     if (!model.linker.has_base())
     {
-        return "a piece comes before the base mesh";
+        return "a piece arrives before the base mesh";
     }
     if (event.key.kind == ContentKind::chunk)
     {
         if (!pages_[slot].id.is_none() || model.linker.is_resident({number}))
         {
             return "slot " + std::to_string(slot) + " is in use, or chunk " +
-                   std::to_string(number) + " is here already";
+                   std::to_string(number) + " is loaded already";
         }
         if (const auto done = parse_chunk(bytes, model.header, {number}, model.slots.pages[slot]);
             !done)
@@ -155,7 +158,7 @@ ReplayQueues::Fault ReplayQueues::fill(const QueueEvent& event)
     if (!index_pages_[slot].id.is_none() || !loaded_index_.insert({index, number}).second)
     {
         return "index slot " + std::to_string(slot) + " is in use, or index page " +
-               std::to_string(number) + " is here already";
+               std::to_string(number) + " is loaded already";
     }
     std::array<ChunkEntry, kChunksPerIndexPage> entries{};
     if (const auto done = parse_index_page(bytes, model.header.counts(), {number},
@@ -174,7 +177,7 @@ ReplayQueues::Fault ReplayQueues::bring_base(const QueueEvent& event)
     Model& model = frame_.model({event.owner});
     if (!has_cells_for(event) || model.linker.pages_here() > 0)
     {
-        return "its base mesh comes where it isn't wanted";
+        return "its base mesh arrives without a request";
     }
     const BaseMesh mesh = frame_.pools().slots.base.part(event.slot, model.header.counts());
     if (const auto done =
@@ -187,7 +190,7 @@ ReplayQueues::Fault ReplayQueues::bring_base(const QueueEvent& event)
     return std::nullopt;
 }
 
-/// Takes requests away until there is as much room as in the recording.
+/// Takes requests from the queue until it has as much room as in the recording.
 ReplayQueues::Fault ReplayQueues::grant_requests(std::uint32_t request_room)
 {
     SpscQueue<PieceRequest>& wanted = frame_.pools().cache.queues.wanted;
@@ -198,7 +201,7 @@ ReplayQueues::Fault ReplayQueues::grant_requests(std::uint32_t request_room)
     }
     return capacity - wanted.size() == request_room
                ? std::nullopt
-               : Fault("another number of requests waits in the queues");
+               : Fault("the number of requests in the queues differs");
 }
 
 } // namespace tactus

@@ -20,11 +20,11 @@ namespace tactus
 class ReplayQueues
 {
 public:
-    /// Both must outlive this; the frame is of the recording's setup.
+    /// Both must outlive this object; `frame` must be made of the recording's setup.
     ReplayQueues(const Recording& recording, Frame& frame);
 
-    /// Prepares the queues for the frame. Returns the mismatch, if any: if an earlier frame
-    /// differed, it has freed other slots or requested other pieces.
+    /// Prepares the queues for the next frame. Returns a mismatch, if any: earlier frames of the
+    /// replay have freed other slots or requested other pieces than in the run.
     [[nodiscard]] std::optional<std::string> open(const RecordedFrame& recorded);
 
 private:
@@ -40,7 +40,7 @@ private:
     [[nodiscard]] Fault bring_base(const QueueEvent& event);
     [[nodiscard]] Fault grant_requests(std::uint32_t request_room);
 
-    /// Content of a slot; none: the slot is free.
+    /// Content of a slot; `id` is none if the slot is free.
     template <typename Id>
     struct Filled
     {
@@ -52,10 +52,10 @@ private:
     Frame& frame_;
     std::vector<Filled<ChunkId>> pages_;
     std::vector<Filled<IndexPageId>> index_pages_;
-    std::vector<bool>
-        /// True for models whose cells are given back while the frame has not yet acknowledged it.
-        gives_cells_back_;
-    std::set<std::pair<std::uint32_t, std::uint32_t>> loaded_index_; ///< Model and page in a slot.
+    /// True for models whose base mesh cells were given back, until the frame acknowledges it.
+    std::vector<bool> gives_cells_back_;
+    /// Model and number of each loaded index page.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> loaded_index_;
     std::uint32_t freed_taken_{0};
 };
 

@@ -37,7 +37,7 @@ std::string read_name(ByteReader& reader)
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Names are printed; a recording must not move the terminal's cursor.
+/// True for names that can be printed: a recording must not move the terminal's cursor.
 bool is_sound(const std::string& name)
 {
     return name.size() <= kMaxRecordedNameBytes && std::ranges::all_of(name, is_printable);
@@ -69,7 +69,7 @@ static_assert(static_cast<int>(Prediction::quadratic) == 2);
 static_assert(static_cast<int>(Prediction::distance_query) == 3);
 static_assert(static_cast<int>(Prediction::automatic) == 4);
 
-/// Bits of a tool's requests and other options.
+/// Bits of a tool's two flag bytes, two bits each.
 constexpr std::uint32_t kWantsContacts = 1;
 constexpr std::uint32_t kWantsPairs = 2;
 constexpr std::uint32_t kPassesThrough = 1;
@@ -99,20 +99,21 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
             requests > (kPassesThrough | kWantsDistance))
         {
             return "tool " + std::to_string(i) +
-                   " has an unknown core, one beyond 1e6 m or a hull of not 1 to 64 vertices";
+                   " has an unknown core, a core beyond 1e6 m, or a hull without 1 to 64 vertices";
         }
         tool.core = *core;
         const auto* mesh = std::get_if<MeshCore>(&tool.core);
         if (mesh != nullptr && mesh->model.value >= models)
         {
-            return "tool " + std::to_string(i) + " names model " +
-                   std::to_string(mesh->model.value) + " of " + std::to_string(models);
+            return "tool " + std::to_string(i) + " refers to model " +
+                   std::to_string(mesh->model.value) + ", but the model count is " +
+                   std::to_string(models);
         }
         if (!is_sound(tool))
         {
             return "tool " + std::to_string(i) +
-                   " is not within 0 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 m/s, 0 to 1e9 N "
-                   "m, 0 to 1e9 N m/rad";
+                   " has a value out of its range: 0 to 1e6 m, 0 to 1e9 N/m, 0 to 1e9 N, 0 to 1e9 "
+                   "m/s, 0 to 1e9 N m, 0 to 1e9 N m/rad";
         }
         setup.tools.push_back(tool);
     }
@@ -128,24 +129,25 @@ Fault parse_objects(ByteReader& reader, std::uint32_t objects, std::uint32_t mod
         const bool is_known = try_read(reader, change);
         if (!is_known || change.kind != SceneChangeKind::object_comes || change.number != i)
         {
-            return "object " + std::to_string(i) + " doesn't come where it should";
+            return "object " + std::to_string(i) + " is out of order";
         }
         if (change.object.model.value >= models)
         {
-            return "object " + std::to_string(i) + " names model " +
-                   std::to_string(change.object.model.value) + " of " + std::to_string(models);
+            return "object " + std::to_string(i) + " refers to model " +
+                   std::to_string(change.object.model.value) + ", but the model count is " +
+                   std::to_string(models);
         }
         if (!is_sound(change.object.material))
         {
             return "object " + std::to_string(i) +
-                   " is not of more than 0 N/m, static friction 0 to 1000, dynamic friction 0 to "
-                   "the static one, damping and viscosity 0 to 1e9 N s/m, a texture at most 1/32 "
-                   "as high as it is long, 0.0001 to 1 m";
+                   " has a material out of its ranges: stiffness above 0 N/m, static friction 0 to "
+                   "1000, dynamic friction 0 to the static one, damping and viscosity 0 to 1e9 N "
+                   "s/m, texture height at most 1/32 of the length, texture length 0.0001 to 1 m";
         }
         if (!is_sound(change.pose))
         {
             return "object " + std::to_string(i) +
-                   " stands at a pose that is no rotation, beyond 10000 m or of a scale not within "
+                   " has a pose without a rotation, beyond 10000 m or with a scale not within "
                    "0.001 to 1000";
         }
         setup.objects.push_back(change.object);
@@ -265,9 +267,9 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
         objects > capacities.objects || capacities.pairs < 1 || capacities.pairs > kMaxPairs)
     {
         return "the setup has " + std::to_string(objects) + " objects and room for " +
-               std::to_string(capacities.objects) + ", and for " +
-               std::to_string(capacities.pairs) + " pairs; as many as there is room for, " +
-               up_to(kMaxObjects) + " and " + up_to(kMaxPairs) + " are allowed";
+               std::to_string(capacities.objects) + " objects and " +
+               std::to_string(capacities.pairs) + " pairs; the room must be " + up_to(kMaxObjects) +
+               " objects and " + up_to(kMaxPairs) + " pairs, and enough for the objects";
     }
     if (is_static > 1)
     {
@@ -296,7 +298,7 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
         *name = read_name(reader);
         if (!is_sound(*name))
         {
-            return "a name in the setup is not of at most 63 printable characters";
+            return "a name in the setup is not at most 63 printable characters";
         }
     }
     ModelCapacities& streamed_models = setup.for_streamed_models;
@@ -320,7 +322,7 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
     {
         return streamed_models == ModelCapacities{}
                    ? std::nullopt
-                   : Fault("there are pools for models that come and go, and no base meshes");
+                   : Fault("there are pools for streamed models, but no base meshes");
     }
     const Fault fault = check(streamed_models, 0);
     return fault || streamed_models.base_cells <= kMaxCapacity ? fault
@@ -356,12 +358,11 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, bool 
     counts = parsed.value().counts();
     if (cache_off > 1)
     {
-        return "the cache's switch is " + std::to_string(cache_off) + "; 0 and 1 are allowed";
+        return "the switch of the cache is " + std::to_string(cache_off) + "; 0 and 1 are allowed";
     }
     if (has_streamed_models && model.base.empty())
     {
-        return capacities == ModelCapacities{} ? std::nullopt
-                                               : Fault("a model that comes and goes has pools");
+        return capacities == ModelCapacities{} ? std::nullopt : Fault("a streamed model has pools");
     }
     if (Fault fault = check(capacities, counts.base_faces))
     {
@@ -371,7 +372,7 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, bool 
     if (needed > bytes_left)
     {
         return "the pools of all models need more than " +
-               std::to_string(kMaxRecordedPoolBytes >> 20U) + " MiB, which is the most allowed";
+               std::to_string(kMaxRecordedPoolBytes >> 20U) + " MiB, the most allowed";
     }
     bytes_left -= needed;
     return std::nullopt;
@@ -404,11 +405,11 @@ std::optional<std::string> parse_name(std::span<const std::byte> payload, Record
     if (kind > static_cast<std::uint8_t>(RecordedName::Kind::object) || what.number >= most ||
         (is_model && what.generation != 0))
     {
-        return "a name is of no model or object of the recording";
+        return "a name belongs to no model or object of the recording";
     }
     if (name.size() > kMaxRecordedNameBytes || name != printable_line(name))
     {
-        return "a name is not of at most 63 bytes, of characters that can be seen";
+        return "a name is not at most 63 bytes of printable characters";
     }
     return setup.names.try_emplace(what, name).second
                ? std::nullopt
@@ -418,7 +419,8 @@ std::optional<std::string> parse_name(std::span<const std::byte> payload, Record
 std::optional<std::string> unless_whole(const ByteReader& reader, const char* section)
 {
     return reader.failed() || !reader.at_end()
-               ? Fault(std::string("the ") + section + " section has another size than its content")
+               ? Fault(std::string("the ") + section +
+                       " section has a size that differs from its content")
                : std::nullopt;
 }
 

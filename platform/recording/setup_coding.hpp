@@ -28,8 +28,8 @@ namespace tactus
 /// Reads a setup section and the number of models that follow. Returns the fault, if any.
 [[nodiscard]] std::optional<std::string> parse_setup(std::span<const std::byte> payload,
                                                      RecordedSetup& setup, std::uint32_t& models);
-/// Reads a model section. `bytes_left`: memory that all pools may still need, reduced by this
-/// model's. Returns the fault, if any.
+/// Reads a model section and its counts. `bytes_left`: bytes that the pools may still take; reduced
+/// by this model's. Returns the fault, if any.
 [[nodiscard]] std::optional<std::string> parse_model(std::span<const std::byte> payload,
                                                      bool has_streamed_models, RecordedModel& model,
                                                      ModelCounts& counts, std::size_t& bytes_left);

@@ -20,15 +20,15 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Reach of a search beyond the tool's radius: this share of the radius, and the way of a hand of
-/// 0.1 m/s in a millisecond.
+/// Reach of a search beyond the tool's radius: kReachShare of the radius, plus kWay_m, the way of a
+/// hand of 0.1 m/s in a millisecond.
 constexpr double kReachShare = 0.05;
 constexpr double kWay_m = 1e-4;
-/// Measured ratio: 5 to 18 faces are refined for each searched face (boxes, capsules and spheres of
-/// 2 to 16 mm on 1.3 M faces).
+/// Faces in the pools for each searched face. Measured: 5 to 18 (boxes, capsules and spheres of 2
+/// to 16 mm on 1.3 M faces).
 constexpr double kKeptPerFace = 8.0;
 
-/// Outline of a core that lies flat: its area, and the length of its rim.
+/// Outline of a core that lies flat on a surface: area, and length of the rim.
 struct Outline
 {
     double area_m2;

@@ -14,21 +14,22 @@ struct FaceDensity
     double faces{0.0};  ///< Number of all faces.
     double per_m2{0.0}; ///< Faces by the area of the base mesh; 0 if that isn't resident.
 };
-/// Density of a model, from its base mesh. Any thread; the functions below, too.
+/// Density of the faces of a model, from its base mesh. This and the functions below: any thread.
 [[nodiscard]] FaceDensity face_density(const ServedModel& model);
 
 /// Approximate number of faces that a frame searches if the tool lies flat on a surface of that
-/// density. These are the faces below its core and within reach around it. 0 for mesh tools.
+/// density: those below its core and within reach around it. 0 for mesh tools.
 [[nodiscard]] double faces_under(const ToolSpec& tool, double faces_per_m2);
 
-/// Approximate demand of a tool that lies on a model, in faces.
+/// Approximate number of faces for a tool that lies on a model.
 struct Footprint
 {
     double faces{0.0}; ///< Faces that a frame searches.
-    double kept{0.0};  ///< Faces in the pools beside the base mesh, if the searched ones are exact.
+    /// Faces in the pools beside the base mesh, so that the searched ones are exact.
+    double kept{0.0};
 };
 
-/// Demand of the tool; 0 for mesh tools and for a density of 0. `scale` is the object's.
+/// Footprint of the tool on an object of this scale; 0 for mesh tools and a density of 0.
 [[nodiscard]] Footprint footprint_of(const ToolSpec& tool, const FaceDensity& density,
                                      double scale);
 

@@ -17,12 +17,13 @@ namespace
 {
 
 constexpr int kTicksPerHalf = 5;
-/// Octaves of a LatencyHistogram: its first 2,047 ns, doubled until beyond kLongest.
+/// Octaves of a LatencyHistogram: the first ends at 2,047 ns, each further one at twice that, the
+/// last beyond kLongest.
 constexpr int kOctaves = 27;
 static_assert((LatencyHistogram::kLongest.ns >> (kOctaves - 1)) < LatencyHistogram::kSubBuckets &&
               (LatencyHistogram::kLongest.ns >> (kOctaves - 2)) >= LatencyHistogram::kSubBuckets);
 
-/// Next percentile to print, as a share. Closer to 1, the steps are smaller.
+/// Percentile to print after `share`, both from 0 to 1; the steps are smaller closer to 1.
 double next_share(double share)
 {
     const double halves = std::floor(std::log2(1.0 / (1.0 - share))) + 1.0;

@@ -12,12 +12,12 @@
 namespace tactus::hrtc
 {
 
-/// Percentiles in the text format of HdrHistogram (.hgrm), in microseconds, for its plotter and
-/// other readers. Each half of the remaining share has five lines.
+/// Percentiles of the histogram in microseconds, as text in the format of HdrHistogram (.hgrm) for
+/// its plotter and other readers. Each halving of the share above a percentile has five lines.
 [[nodiscard]] std::string hdr_text(const LatencyHistogram& histogram);
 
 /// Writes one file for each of the report's times, named after it, such as frame.hgrm. Returns the
-/// refusal of the first that can't be written.
+/// refusal of the first file that can't be written.
 [[nodiscard]] std::optional<Refusal> write_histograms(const RunStatistics& statistics,
                                                       const std::string& folder);
 

@@ -12,7 +12,7 @@
 namespace tactus::hrtc
 {
 
-/// Edges from 0.1 us to 100 s, `per_decade` in each decade.
+/// Edges of the bins in microseconds, from 0.1 us to 100 s, `per_decade` in each decade.
 [[nodiscard]] std::vector<double> edges_us(int per_decade);
 
 /// Counts between neighbouring edges. Values below the first edge count in the first bin.
@@ -22,8 +22,8 @@ namespace tactus::hrtc
 /// Histograms of one chart, with the names of their lines.
 using NamedHistograms = std::vector<std::pair<std::string, const LatencyHistogram*>>;
 
-/// Chart of the counts of `what` over microseconds, from the first to the last count. It includes
-/// the period, which is marked.
+/// Chart of the counts of `what` over microseconds, from the first bin with a count to the last.
+/// The chart always includes the period and marks it.
 [[nodiscard]] plot::Chart latency_chart(const std::string& title, const std::string& what,
                                         const NamedHistograms& histograms, Duration period);
 

@@ -21,44 +21,45 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// Remedy for a limit.
+/// Remedy that the text proposes for a limit.
 enum class Remedy : std::uint8_t
 {
     pool,    ///< More --pool-mib.
     splits,  ///< More --splits, or more work a frame.
     work,    ///< More work a frame, or a tool that needs less.
     tool,    ///< A smaller tool; memory does not help.
-    host,    ///< A faster network.
+    server,  ///< A faster network.
     objects, ///< Fewer objects.
 };
 
-/// Limit, with the flag of the frames that reached it.
+/// Limit of a frame, with the fault flag of the frames that reached it.
 struct Limit
 {
     const char* flag;
     const char* words;
     Remedy remedy;
 };
-/// Limits in the order of precedence, if two were reached by the same number of frames.
+/// Limits; if the same number of frames reached two, the earlier one is reported.
 constexpr Limit kLimits[] = {
-    {"surface_truncated", "more triangles are in reach of the tool than a frame looks at",
+    {"surface_truncated", "more triangles are in reach of the tool than a frame can search",
      Remedy::tool},
-    {"node_budget_spent", "a search reached the most work, nodes or triangles of a frame",
+    {"node_budget_spent", "a search reached the limit of work, nodes or triangles of a frame",
      Remedy::work},
-    {"refine_heap_full", "more coarse faces are in reach of the tool than a frame ranks",
+    {"refine_heap_full", "more coarse faces are in reach of the tool than a frame can rank",
      Remedy::tool},
-    {"tool_over_capacity", "more holds the tool than is followed", Remedy::tool},
+    {"tool_over_capacity", "more objects or contacts are at the tool than a frame can follow",
+     Remedy::tool},
     {"forest_full", "no room for faces", Remedy::pool},
     {"tree_full", "no room for the tree", Remedy::pool},
     {"cache_full", "no room for pages", Remedy::pool},
-    {"pair_shed", "no room for a tool and an object", Remedy::pool},
-    {"split_budget_spent", "not enough splits a frame", Remedy::splits},
-    {"held_records_full", "not enough splits a frame", Remedy::splits},
-    {"ranking_full", "more is to be loaded than is ranked", Remedy::objects},
-    {"chunk_late", "pieces came too late", Remedy::host},
+    {"pair_shed", "no room for a pair of tool and object", Remedy::pool},
+    {"split_budget_spent", "too few splits in a frame", Remedy::splits},
+    {"held_records_full", "too few splits in a frame", Remedy::splits},
+    {"ranking_full", "more regions are to be loaded than can be ranked", Remedy::objects},
+    {"chunk_late", "pieces arrived too late", Remedy::server},
 };
 
-/// Remedy of a longer frame; empty if its work has no limit.
+/// Remedy by more time a frame: --frame-budget-us; empty without a time budget.
 std::string more_time(const Json& report)
 {
     const Json& frame_us = report["budgets"]["frame_us"];
@@ -69,7 +70,7 @@ std::string more_time(const Json& report)
 std::string remedy_text(Remedy remedy, const Json& report)
 {
     constexpr const char* kOtherTool =
-        "a smaller --tool, or a model of fewer faces; no memory helps";
+        "a smaller --tool, or a model with fewer faces; more memory does not help";
     const std::string longer = more_time(report);
     switch (remedy)
     {
@@ -81,16 +82,16 @@ std::string remedy_text(Remedy remedy, const Json& report)
     case Remedy::splits:
         return longer.empty() ||
                        report["budgets"]["splits"].get<std::uint32_t>() < kMaxSplitsPerFrame
-                   ? fmt::format("--splits {}, the most", kMaxSplitsPerFrame)
+                   ? fmt::format("--splits {}, the largest value", kMaxSplitsPerFrame)
                    : longer;
     case Remedy::work:
         return longer.empty() ? kOtherTool : longer + ", " + kOtherTool;
     case Remedy::tool:
         return kOtherTool;
-    case Remedy::host:
-        return "a nearer host, or more --pool-mib, so that more stays here";
+    case Remedy::server:
+        return "a nearer server, or a larger --pool-mib, so that more pieces stay loaded";
     case Remedy::objects:
-        return "fewer objects in one place";
+        return "fewer objects at one place";
     }
     return {};
 }

@@ -31,7 +31,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// Sources of a report.
+/// Data from which a report is made.
 struct RunRecord
 {
     const Options& options;
@@ -65,9 +65,9 @@ Json pool_of(const PoolUse& use, std::size_t bytes_each)
             {"bytes", use.capacity * bytes_each}};
 }
 
-/// Sum of the models' use of a pool and of `for_streamed_models`, the capacity without a model.
-/// Models that share a pool may have peaks at different times. The sum of the peaks is therefore
-/// clamped to the capacity.
+/// Sum of the models' use of a pool. `for_streamed_models` is capacity that belongs to no model.
+/// Peaks of models that share a pool may come at different times, so their sum is clamped to the
+/// capacity.
 PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*pool,
                std::uint32_t for_streamed_models)
 {
@@ -82,8 +82,8 @@ PoolUse sum_of(const std::vector<ModelOutput>& models, PoolUse ModelOutput::*poo
     return sum;
 }
 
-/// Pools, summed over the models. `bytes` covers one pool only. total_bytes also includes tables
-/// and the transport's side.
+/// Pools, summed over the models. `bytes` is the memory of one pool. `total_bytes` is all memory of
+/// frame and chunk loader: pools, tables (page table, links, requests) and queues.
 Json pools_of(const RunRecord& record)
 {
     constexpr std::size_t kFaceBytes =
@@ -104,7 +104,7 @@ Json pools_of(const RunRecord& record)
         {"total_bytes", record.controller.pool_bytes()}};
 }
 
-/// Motion of the object. All counts are zero for files, and if poses aren't followed.
+/// Motion of the object. All counts are zero with models from files, and if poses aren't followed.
 Json pose_of(const FinishedRun& run, std::size_t model, std::size_t object)
 {
     const PoseUse use = run.pose_uses.empty() ? PoseUse{} : run.pose_uses[object];
@@ -145,7 +145,7 @@ Json models_of(const RunRecord& record)
                         {"pieces_refused", chunk_loader.refused() + served.link->damaged()},
                         {"pieces_overdue", chunk_loader.overdue},
                         {"pieces_missing", chunk_loader.overdue - chunk_loader.overdue_came},
-                        {"host_connected", served.link->state() == LinkState::connected},
+                        {"server_connected", served.link->state() == LinkState::connected},
                         {"pose", first[i] < record.controller.objects().size()
                                      ? pose_of(record.run, i, first[i])
                                      : Json()}});
@@ -158,7 +158,7 @@ double stiffness_limit_of(const ConditionerSetup& setup)
     return stiffness_limit(setup.device, setup.period_s);
 }
 
-/// Frames with each action; the ForceFader causes the start-up ramp.
+/// Number of frames with each ForceAction. The start-up ramp is none of these; ForceFader makes it.
 Json conditioned_of(const ForceCounts& force)
 {
     Json json = Json::object();
@@ -169,7 +169,7 @@ Json conditioned_of(const ForceCounts& force)
     return json;
 }
 
-/// Datagrams between a tool's device and its driver; null for devices without a driver.
+/// Datagrams between a UDP device and its driver; null for other devices.
 Json traffic_of(const HapticDevice& device)
 {
     const auto* udp = dynamic_cast<const UdpDevice*>(&device);
@@ -396,7 +396,7 @@ Json wire_of(const RunRecord& record)
     }
     const auto ms = [&](double value) { return waiting.total() > 0 ? Json(value) : Json(); };
     return {{"bytes_received", bytes_received},
-            {"host_lost", record.run.host_was_lost},
+            {"server_lost", record.run.server_was_lost},
             {"arrival_ms",
              {{"p50", ms(waiting.quantile_ms(0.5))},
               {"p99", ms(waiting.quantile_ms(0.99))},
@@ -441,7 +441,7 @@ std::string utc_text(std::time_t time)
                        parts.tm_mon + 1, parts.tm_mday, parts.tm_hour, parts.tm_min, parts.tm_sec);
 }
 
-/// Data for a repetition of the run.
+/// Data with which the run can be repeated.
 Json run_of(const RunRecord& record)
 {
     Json devices = Json::array();

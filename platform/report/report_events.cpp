@@ -20,7 +20,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// Names of the bits that are set.
+/// Names of the bits that are set in `bits`; `names` in the order of the bits.
 template <std::size_t Count>
 Json names_of(unsigned bits, const std::array<const char*, Count>& names)
 {

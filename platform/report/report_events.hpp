@@ -9,14 +9,14 @@ namespace tactus::hrtc
 
 struct FinishedRun;
 
-/// Deadlines of a run in the report, with single cycles.
+/// Part of the report on deadlines, with single cycles.
 [[nodiscard]] nlohmann::ordered_json deadlines_of(const FinishedRun& run);
 
-/// Times and causes without force in the report.
+/// Part of the report on safety: brakes, and times and causes of fades.
 [[nodiscard]] nlohmann::ordered_json safety_of(const FinishedRun& run);
 
-/// Servers with authority in the report, with their events. Times count from the first safety
-/// event; earlier ones are negative.
+/// Part of the report on the servers with authority and their events. Times count from the first
+/// safety event; earlier ones are negative.
 [[nodiscard]] nlohmann::ordered_json servers_of(const FinishedRun& run);
 
 } // namespace tactus::hrtc

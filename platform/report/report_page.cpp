@@ -22,7 +22,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-/// Most names in the title; with more models it gives their number.
+/// Largest number of model names in the title; with more models the title gives their number.
 constexpr std::size_t kNamesInTitle = 4;
 
 std::string text_of(const Json& value)
@@ -58,7 +58,8 @@ struct Figure
     bool is_number;
 };
 
-/// Adds all figures below an object, named "outer.inner". Lists of objects are left to tables.
+/// Adds all values inside `object` as figures named "outer.inner". Lists of objects are left out;
+/// they become tables.
 void flatten(const Json& object, const std::string& before, std::vector<Figure>& figures)
 {
     for (const auto& [key, value] : object.items())
@@ -160,15 +161,15 @@ void add_verdict(const Json& report, plot::Page& page)
         return;
     }
     const auto brackets = report["answers"]["bounded"].get<std::uint64_t>();
-    page.verdict(fmt::format("No deadline missed by an overrun of the loop, {} by the machine; {}.",
-                             report["deadline"]["latency_misses"].get<std::uint64_t>(),
-                             brackets == 0
-                                 ? "no answer is only bounded"
-                                 : counted(brackets, "answer is bounded", "answers are bounded")),
-                 true);
+    page.verdict(
+        fmt::format("No overruns of the loop, {}; {}.",
+                    counted(report["deadline"]["latency_misses"].get<std::uint64_t>(),
+                            "latency miss", "latency misses"),
+                    brackets == 0 ? "no bounded answers" : counted(brackets, "bounded answer")),
+        true);
 }
 
-/// Vertical lines at missed deadlines and withheld forces.
+/// Marks of missed deadlines and of fades, except that at the end of the run.
 std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statistics)
 {
     const double period_s = report["period_ns"].get<double>() * 1e-9;
@@ -195,7 +196,7 @@ std::vector<plot::Mark> marks_of(const Json& report, const RunStatistics& statis
         if (frame.is_number() && !event["causes"].empty() && !is_end)
         {
             marks.push_back({frame.get<double>() * period_s,
-                             fmt::format("force withheld for {}", text_of(event["causes"])),
+                             fmt::format("force off, causes: {}", text_of(event["causes"])),
                              plot::MarkKind::plain});
         }
     }
@@ -235,7 +236,7 @@ std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& stat
         return made;
     };
     std::vector<plot::Chart> charts{chart("Force on the device", "N"),
-                                    chart("Widest bounds; 0 where no answer is open", "mm"),
+                                    chart("Widest bounds of bounded or stale answers", "mm"),
                                     chart("Times of the stages", "us")};
     charts[0].lines = {line("force", [](const SeriesPoint& point) { return point.force_n; })};
     charts[1].lines = {
@@ -257,9 +258,9 @@ std::vector<plot::Chart> series_of(const Json& report, const RunStatistics& stat
 
 void add_times(const Json& report, const RunStatistics& statistics, plot::Page& page)
 {
-    page.heading("Over the run");
-    page.paragraph(fmt::format("Each point is the worst of {} neighbouring frames.",
-                               statistics.series.stride()));
+    page.heading("Course of the run");
+    page.paragraph(fmt::format("Each point shows the worst of {}.",
+                               counted(statistics.series.stride(), "neighbouring frame")));
     const bool has_times = !report["realtime"]["virtual_time"].get<bool>();
     page.charts(series_of(report, statistics, has_times));
     if (!has_times)
@@ -275,14 +276,15 @@ void add_times(const Json& report, const RunStatistics& statistics, plot::Page& 
         stages.emplace_back(kStageNames.at(stage), &statistics.stages.at(stage));
     }
     const LatencyHistogram response = statistics.deadlines.response();
-    page.charts({latency_chart("A frame", "frames",
-                               {{"frame, device included", &statistics.frame},
-                                {"processor time of it", &statistics.cpu}},
-                               period),
-                 latency_chart("Its stages", "frames", stages, period),
-                 latency_chart("Waking, and the force's delay", "frames",
-                               {{"woken late", &statistics.wake}, {"deadline to force", &response}},
-                               period)});
+    page.charts(
+        {latency_chart(
+             "Time of a frame", "frames",
+             {{"frame, device included", &statistics.frame}, {"processor time", &statistics.cpu}},
+             period),
+         latency_chart("Stages of a frame", "frames", stages, period),
+         latency_chart("Wake-up latency and delay of the force", "frames",
+                       {{"wake-up latency", &statistics.wake}, {"deadline to force", &response}},
+                       period)});
 }
 
 /// Adds a list in a section of its own, unless it is empty.
@@ -319,9 +321,9 @@ std::string make_page(const Json& report, const RunStatistics& statistics,
     add_times(report, statistics, page);
     std::vector<plot::TitledTable> sections;
     for (const auto& [key, title] :
-         {std::pair("run", "Run"), std::pair("answers", "Answers, frames"),
+         {std::pair("run", "Run"), std::pair("answers", "Answers, in frames"),
           std::pair("scene", "Scene"), std::pair("cache", "Cache"), std::pair("wire", "Wire"),
-          std::pair("deadline", "Deadlines"), std::pair("realtime", "In the loop"),
+          std::pair("deadline", "Deadlines"), std::pair("realtime", "Real-time loop"),
           std::pair("work", "Work"), std::pair("pools", "Pools"), std::pair("budgets", "Budgets"),
           std::pair("force", "Force"), std::pair("safety", "Safety"),
           std::pair("faults", "Frames with a fault"), std::pair("recording", "Recording"),
@@ -333,20 +335,20 @@ std::string make_page(const Json& report, const RunStatistics& statistics,
             sections.push_back({title, facts_of(report[key])});
         }
     }
-    page.heading("Every figure");
+    page.heading("All figures");
     page.tables(sections);
     add_list("Models", report["models"], columns_of, page);
     add_list("Tools", report["tools"], columns_of, page);
     add_list("Pairs of tool and model", report["pairs"], table_of, page);
-    add_list("Refused of others on the domain", report["refused"], columns_of, page);
+    add_list("Messages refused from others on the domain", report["refused"], columns_of, page);
     add_list("Safety events", report["safety"]["events"], table_of, page);
-    add_list("Cycles of note", report["deadline"]["noted"], table_of, page);
+    add_list("Noted cycles", report["deadline"]["noted"], table_of, page);
     SummaryFacts words;
     for (const auto& [word, meaning] : report_words())
     {
         words.emplace_back(word, meaning);
     }
-    page.heading("The words");
+    page.heading("Words");
     page.table(plot::facts(words));
     page.paragraph(fmt::format("Report schema {}, {} frames of {} ns, {} s.",
                                report["schema"].get<int>(), report["frames"].get<std::uint64_t>(),

@@ -20,7 +20,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Most faces; more enlarge the page without a better picture.
+/// Largest number of faces; more enlarge the page without a better picture.
 constexpr std::size_t kFacesMax = 8'000;
 
 plot::Place to_place(const Vec3& place_m)
@@ -81,7 +81,7 @@ std::vector<std::size_t> nearest_first(const Controller& controller,
 
 plot::Relief relief_of(const Controller& controller, const RunStatistics& statistics)
 {
-    plot::Relief relief{.title = "Where the tool was, and the force on the device",
+    plot::Relief relief{.title = "Path of the tool and force on the device",
                         .faces = {},
                         .ways = {},
                         .unit = "N",
@@ -107,11 +107,10 @@ plot::Relief relief_of(const Controller& controller, const RunStatistics& statis
         drawn += faces.empty() ? 0U : 1U;
     }
     const std::size_t objects = controller.objects().size();
-    relief.note =
-        fmt::format("The surface is the coarsest that the controller has, of {}{}, where "
-                    "{} stood at the start; at the tool it is finer.",
-                    counted(drawn, "object"), drawn < objects ? fmt::format(" of {}", objects) : "",
-                    drawn == 1 ? "it" : "they");
+    relief.note = fmt::format("The picture shows the coarsest surface of {}{} at the start of the "
+                              "run. At the tool the surface was finer.",
+                              counted(drawn, "object"),
+                              drawn < objects ? fmt::format(" of {}", objects) : "");
     return relief;
 }
 

@@ -9,8 +9,8 @@
 namespace tactus::hrtc
 {
 
-/// Paths of the tools with their forces, and the base meshes of the nearest objects at their first
-/// poses. Call it once the loop has ended.
+/// Picture of the tools' paths with their forces, and of the base meshes of the nearest objects at
+/// their first poses. Call it once the loop has ended.
 [[nodiscard]] plot::Relief relief_of(const Controller& controller, const RunStatistics& statistics);
 
 } // namespace tactus::hrtc

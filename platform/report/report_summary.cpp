@@ -26,17 +26,18 @@ using Json = nlohmann::ordered_json;
 std::string work_text(const Json& budgets)
 {
     return fmt::format(
-        "for {} us a frame: {} to {}, {:.0f} done in the mean and {} at most; {} frames "
-        "with the least",
+        "budget for {} us a frame: {} to {}; {:.0f} used on average, {} at most; least budget in "
+        "{}",
         budgets["frame_us"].get<double>(), budgets["work"]["min"].get<std::uint32_t>(),
         budgets["work"]["max"].get<std::uint32_t>(), budgets["work_done"]["mean"].get<double>(),
-        budgets["work_done"]["max"].get<std::uint32_t>(), budgets["at_floor"].get<std::uint64_t>());
+        budgets["work_done"]["max"].get<std::uint32_t>(),
+        counted(budgets["at_floor"].get<std::uint64_t>(), "frame"));
 }
 
-/// Most models with a line each; more are summed up in one line.
+/// Largest number of models with a line each; more are summed up in one line.
 constexpr std::size_t kModelsInLines = 4;
 
-/// Adds the moved objects: of each model the first that shows it.
+/// Adds the motion of each model's first object, if it follows a server.
 void add_poses(const Json& models, SummaryFacts& facts)
 {
     SummaryFacts lines;
@@ -55,20 +56,20 @@ void add_poses(const Json& models, SummaryFacts& facts)
         step_max_m = std::max(step_max_m, step_m);
         age_max_s = std::max(age_max_s, age_s);
         lines.emplace_back("poses",
-                           fmt::format("{}: moved in {}, by {:.4g} m at most; oldest {:.3g} s",
+                           fmt::format("{}: moved in {}, by at most {:.4g} m; oldest pose {:.3g} s",
                                        model["name"].get<std::string>(),
                                        counted(pose["moves"].get<std::uint64_t>(), "frame"), step_m,
                                        age_s));
     }
     if (lines.size() > kModelsInLines)
     {
-        lines = {{"poses", fmt::format("{} models: moved by {:.4g} m at most; oldest {:.3g} s",
+        lines = {{"poses", fmt::format("{} models: moved by at most {:.4g} m; oldest pose {:.3g} s",
                                        lines.size(), step_max_m, age_max_s)}};
     }
     facts.insert(facts.end(), lines.begin(), lines.end());
 }
 
-/// Stages of the models at the end; empty if all models are resident.
+/// Number of models in each stage at the end; empty if all are resident.
 std::string stages_text(const Json& models)
 {
     std::string text;
@@ -87,14 +88,14 @@ void add_scene(const Json& scene, SummaryFacts& facts)
 {
     if (scene["objects_max"].get<std::uint64_t>() > 1)
     {
-        facts.emplace_back("scene",
-                           fmt::format("{} objects, {} at most; near a tool at most {} at a time; "
-                                       "{} frames at an invisible wall{}",
-                                       scene["objects"].get<std::uint64_t>(),
-                                       scene["objects_max"].get<std::uint64_t>(),
-                                       scene["pairs_awake_max"].get<std::uint64_t>(),
-                                       scene["invisible_wall_frames"].get<std::uint64_t>(),
-                                       stages_text(scene["models"])));
+        facts.emplace_back(
+            "scene",
+            fmt::format("{}, at most {}; at most {} near a tool; {} at an invisible wall{}",
+                        counted(scene["objects"].get<std::uint64_t>(), "object"),
+                        scene["objects_max"].get<std::uint64_t>(),
+                        scene["pairs_awake_max"].get<std::uint64_t>(),
+                        counted(scene["invisible_wall_frames"].get<std::uint64_t>(), "frame"),
+                        stages_text(scene["models"])));
     }
 }
 
@@ -116,13 +117,13 @@ void add_stability(const Json& tools, SummaryFacts& facts)
         facts.emplace_back("stability",
                            counted(capped, "force") + " softened" +
                                (std::isfinite(cap)
-                                    ? fmt::format(", to a wall of {:.0f} N/m at the softest", cap)
-                                    : " in their turning"));
+                                    ? fmt::format(", to {:.0f} N/m at the softest", cap)
+                                    : " in rotation"));
     }
     if (damped > 0)
     {
         facts.emplace_back("stability",
-                           counted(damped, "force") + " damped, lest the wall gives energy away");
+                           counted(damped, "force") + " damped by the passivity controller");
     }
 }
 
@@ -142,7 +143,7 @@ void add_safety(const Json& safety, SummaryFacts& facts)
     {
         facts.emplace_back(
             "safety",
-            fmt::format("force faded for: {}; {} by the supervisor", causes,
+            fmt::format("force faded, causes: {}; {} by the supervisor", causes,
                         counted(safety["supervisor_brakes"].get<std::uint64_t>(), "brake")));
     }
 }
@@ -198,16 +199,13 @@ void add_static(const Json& models, SummaryFacts& facts)
         if (model["static"].get<bool>())
         {
             lines.emplace_back("static", model["name"].get<std::string>() +
-                                             ": all of it is here and refined, nothing is left to "
-                                             "load, refine or refit");
+                                             ": loaded as a whole and fully refined");
         }
     }
     if (lines.size() > kModelsInLines)
     {
-        lines = {{"static",
-                  fmt::format("{} of {} models: all of them is here and refined, nothing is left "
-                              "to load, refine or refit",
-                              lines.size(), models.size())}};
+        lines = {{"static", fmt::format("{} of {} models: loaded as a whole and fully refined",
+                                        lines.size(), models.size())}};
     }
     facts.insert(facts.end(), lines.begin(), lines.end());
 }
@@ -225,9 +223,9 @@ void add_refused(const Json& peers, SummaryFacts& facts)
     }
     if (refused > 0)
     {
-        facts.emplace_back("refused", fmt::format("{} of {} on the domain; the report says why",
-                                                  counted(refused, "statement"),
-                                                  counted(peers.size(), "program")));
+        facts.emplace_back(
+            "refused", fmt::format("{} from {} on the domain; the report lists the reasons",
+                                   counted(refused, "message"), counted(peers.size(), "program")));
     }
 }
 
@@ -238,8 +236,8 @@ void add_servers(const Json& servers, SummaryFacts& facts)
     if (count("lost") + count("replaced") + count("not_followed") + count("namesake") > 0)
     {
         facts.emplace_back("servers",
-                           fmt::format("lost {}, back {}, replaced {}; others that offered the "
-                                       "same {}, not followed {}; the report names them",
+                           fmt::format("lost {}, back {}, replaced {}; others with the same name "
+                                       "{}, not followed {}; the report lists them",
                                        count("lost"), count("back"), count("replaced"),
                                        count("namesake"), count("not_followed")));
     }
@@ -263,7 +261,7 @@ void add_models(const Json& report, SummaryFacts& facts)
                     report["wire"]["bytes_received"].get<double>() / 1e3,
                     counted(report["cache"]["loads"].get<std::uint64_t>(), "page"),
                     report["cache"]["evictions"].get<std::uint64_t>(),
-                    report["wire"]["host_lost"].get<bool>() ? "; the host went away" : ""));
+                    report["wire"]["server_lost"].get<bool>() ? "; the server was lost" : ""));
     if (const Json& arrival = report["wire"]["arrival_ms"]; !arrival["max"].is_null())
     {
         facts.emplace_back(
@@ -327,9 +325,11 @@ SummaryFacts run_facts(const Json& report)
     if (report["realtime"]["system_calls_trapped"].get<bool>())
     {
         facts.emplace_back(
-            "calls", fmt::format("{} system calls in frames, {} of the loop between them",
-                                 report["realtime"]["system_calls_in_frame"].get<std::uint64_t>(),
-                                 report["realtime"]["system_calls_outside"].get<std::uint64_t>()));
+            "calls",
+            fmt::format("{} in frames, {} of the loop between frames",
+                        counted(report["realtime"]["system_calls_in_frame"].get<std::uint64_t>(),
+                                "system call"),
+                        report["realtime"]["system_calls_outside"].get<std::uint64_t>()));
     }
     if (!report["recording"].is_null())
     {
@@ -337,10 +337,11 @@ SummaryFacts run_facts(const Json& report)
     }
     if (const Json& trace = report["trace"]; !trace.is_null())
     {
-        facts.emplace_back("trace", fmt::format("{} frames, {:.1f} MB, {} times left out",
-                                                trace["frames"].get<std::uint64_t>(),
-                                                trace["bytes"].get<double>() / 1e6,
-                                                trace["lost"].get<std::uint64_t>()));
+        facts.emplace_back(
+            "trace", fmt::format("{}, {:.1f} MB; {} lost",
+                                 counted(trace["frames"].get<std::uint64_t>(), "frame"),
+                                 trace["bytes"].get<double>() / 1e6,
+                                 counted(trace["lost"].get<std::uint64_t>(), "entry", "entries")));
     }
     return facts;
 }
@@ -382,7 +383,7 @@ std::string make_summary(const Json& report)
     const SummaryFacts verdict{{"verdict", verdict_text(complaints_of(report))}};
     const std::string times =
         report["realtime"]["virtual_time"].get<bool>()
-            ? to_lines({{"times", "none: in virtual time a frame takes none"}})
+            ? to_lines({{"times", "none: virtual time stands still during a frame"}})
             : times_table(report["times_us"]);
     return to_lines(verdict) + to_lines(touch_facts(report)) + times + to_lines(run_facts(report));
 }

@@ -25,9 +25,10 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Most objects with a line each; more are summed up in one line.
+/// Largest number of objects with a line each; more are summed up in one line.
 constexpr std::size_t kObjectsInLines = 4;
-/// Size of a tool, in sizes of the largest object, that suggests another unit of length.
+/// Ratio of a tool's diameter to the longest edge of the largest object, from which the tool's unit
+/// of length is doubted.
 constexpr double kMuchLarger = 3.0;
 
 /// Box of an object in the world.
@@ -71,7 +72,8 @@ std::string name_of(const Options& options, const Controller& controller, std::s
     return own.empty() || own == model ? model : fmt::format("{} ({})", own, model);
 }
 
-/// Text on the objects with a default place or material, if other objects have a given one.
+/// Text on those of `objects` that have a default place or material while another object has a
+/// given one; empty without any.
 std::string defaults_of(const Options& options, std::span<const PlacedObject> objects)
 {
     const auto left_by = [&](bool PlacedObject::*given) -> std::string
@@ -82,11 +84,13 @@ std::string defaults_of(const Options& options, std::span<const PlacedObject> ob
     };
     const std::string places = left_by(&PlacedObject::has_place);
     const std::string materials = left_by(&PlacedObject::has_material);
-    return (places.empty() ? "" : places + " --place: as in the file") +
-           (materials.empty() ? "" : materials + " --material: as stiff as --stiffness, smooth");
+    return (places.empty() ? "" : places + " --place: placed as in the file") +
+           (materials.empty()
+                ? ""
+                : materials + " --material: stiffness of --stiffness, no friction or texture");
 }
 
-/// Options of an object; empty for an object of a host's scene.
+/// Options of an object, as a span of one; empty for an object of a server's scene.
 std::span<const PlacedObject> placed_object(const Options& options, std::size_t object)
 {
     return object < options.objects.size() ? std::span(options.objects).subspan(object, 1)
@@ -100,7 +104,7 @@ std::string object_lines(const Options& options, const Controller& controller,
     for (std::size_t i = 0; i < objects.size() && objects.size() <= kObjectsInLines; ++i)
     {
         const Vec3& edges_m = objects[i].edges_m;
-        text += fmt::format("{:<12}{}: {:.4g} x {:.4g} x {:.4g} m, round {}{}\n", "touches",
+        text += fmt::format("{:<12}{}: {:.4g} x {:.4g} x {:.4g} m, around {}{}\n", "touches",
                             name_of(options, controller, i), edges_m.x(), edges_m.y(), edges_m.z(),
                             text_of(objects[i].center_m),
                             defaults_of(options, placed_object(options, i)));
@@ -114,14 +118,15 @@ std::string object_lines(const Options& options, const Controller& controller,
             low_m = low_m.cwiseMin(object.center_m);
             high_m = high_m.cwiseMax(object.center_m);
         }
-        text = fmt::format("{:<12}{} objects of {}, round {} to {}{}\n", "touches", objects.size(),
-                           counted(controller.models().size(), "model"), text_of(low_m),
-                           text_of(high_m), defaults_of(options, options.objects));
+        text = fmt::format("{:<12}{} objects of {}, centres from {} to {}{}\n", "touches",
+                           objects.size(), counted(controller.models().size(), "model"),
+                           text_of(low_m), text_of(high_m), defaults_of(options, options.objects));
     }
     return text;
 }
 
-/// Number of the objects in the device's reach; if none is, the distance of the nearest.
+/// Text on the number of objects in the device's reach; if there is none, on the distance of the
+/// nearest.
 std::string reach_of(const Options& options, const ToolSetup& tool, const Controller& controller,
                      const std::vector<Surroundings>& objects)
 {
@@ -132,7 +137,7 @@ std::string reach_of(const Options& options, const ToolSetup& tool, const Contro
     for (const Surroundings& object : objects)
     {
         beyond_m.push_back((object.center_m - centre_m).norm() - object.radius_m() -
-                           device.workspace_radius_m - tool.hand_radius_m);
+                           device.workspace_radius_m - tool.operator_radius_m);
     }
     const auto reached =
         std::ranges::count_if(beyond_m, [](double distance_m) { return distance_m <= 0.0; });
@@ -142,16 +147,16 @@ std::string reach_of(const Options& options, const ToolSetup& tool, const Contro
     }
     if (objects.empty())
     {
-        return "WHERE NO OBJECT IS";
+        return "NO OBJECT IN REACH";
     }
     const auto nearest = std::ranges::min_element(beyond_m);
     return fmt::format(
-        "WHERE NO OBJECT IS: {} is {:.3g} m beyond its reach",
+        "NO OBJECT IN REACH: {} is {:.3g} m beyond the reach",
         name_of(options, controller, static_cast<std::size_t>(nearest - beyond_m.begin())),
         *nearest);
 }
 
-/// Note on a tool several times as large as all objects; else empty.
+/// Note on a tool that is kMuchLarger times as large as all objects or more; else empty.
 std::string size_note(const ToolSetup& tool, const std::vector<Surroundings>& objects)
 {
     double largest_m = 0.0;
@@ -160,19 +165,20 @@ std::string size_note(const ToolSetup& tool, const std::vector<Surroundings>& ob
         largest_m = std::max(largest_m, object.edges_m.maxCoeff());
     }
     const double times = largest_m > 0.0 ? 2.0 * tool.spec.radius_m / largest_m : 0.0;
-    return times < kMuchLarger ? std::string()
-                               : fmt::format(", {:.2g} TIMES AS LARGE as what it can touch", times);
+    return times < kMuchLarger
+               ? std::string()
+               : fmt::format(", {:.2g} TIMES AS LARGE as the largest object", times);
 }
 
-/// Count above 0, to two digits, such as 27000.
+/// Text of a count above 0, rounded to two digits, such as 27000.
 std::string about(double count)
 {
     const double step = std::pow(10.0, std::max(0.0, std::floor(std::log10(count)) - 1.0));
     return fmt::format("{:.0f}", std::round(count / step) * step);
 }
 
-/// Note if more faces lie below the tool than a frame searches or the pools can hold. The densest
-/// object counts. Else empty.
+/// Note on a tool below which lie more faces than a frame searches or the pools can hold; else
+/// empty. The object with most faces below the tool counts.
 std::string footprint_note(const ToolSetup& tool, const Controller& controller,
                            const std::vector<FaceDensity>& densities)
 {
@@ -190,23 +196,24 @@ std::string footprint_note(const ToolSetup& tool, const Controller& controller,
     std::string limit;
     if (most.faces > kMaxLocalTriangles)
     {
-        limit = fmt::format("a frame looks at {}", kMaxLocalTriangles);
+        limit = fmt::format("but a frame searches {}", kMaxLocalTriangles);
     }
     else if (most.kept > room)
     {
         const double pool_mib = static_cast<double>(controller.pool_bytes()) / 0x1p20;
-        limit = fmt::format("the pools have room for {} of {} there; --pool-mib {:.0f} would do",
+        limit = fmt::format("but the pools hold {} of {} needed there; --pool-mib {:.0f} is enough",
                             about(room), about(most.kept), std::ceil(pool_mib * most.kept / room));
     }
     const bool is_tolerant = controller.setup().force_tolerance_n > 0.0;
-    return limit.empty() ? std::string()
-                         : fmt::format("{:<12}lies on some {} faces of {}, {}: it {}\n", "",
-                                       about(most.faces), name, limit,
-                                       is_tolerant ? "feels a coarser surface, with proven bounds"
-                                                   : "MAY BE HELD BACK, without --force-tolerance");
+    return limit.empty()
+               ? std::string()
+               : fmt::format("{:<12}covers about {} faces of {}, {}: the tool {}\n", "",
+                             about(most.faces), name, limit,
+                             is_tolerant ? "touches a coarser surface, with proven bounds"
+                                         : "MAY BE DATA-LIMITED without --force-tolerance");
 }
 
-/// Term of the stiffness limit that softens the wall below the asked stiffness.
+/// Text on the term of the stiffness limit that makes the wall softer than asked.
 std::string softened_by(const ToolSetup& tool, double damping_n_s_per_m, double asked_n_per_m)
 {
     const DeviceLimits& device = tool.device->info().limits;
@@ -214,18 +221,18 @@ std::string softened_by(const ToolSetup& tool, double damping_n_s_per_m, double 
     const StiffnessLimits limits = stiffness_limits(device, period_s, damping_n_s_per_m);
     const double least_n_per_m = std::min(limits.sampling_n_per_m, limits.quantisation_n_per_m);
     const std::string of_surface =
-        damping_n_s_per_m > 0.0 ? fmt::format(" less {:.3g} of the surface", damping_n_s_per_m)
+        damping_n_s_per_m > 0.0 ? fmt::format(" minus {:.3g} of the surface", damping_n_s_per_m)
                                 : "";
     const std::string cause =
-        limits.device_n_per_m < least_n_per_m ? "the device's own limit"
+        limits.device_n_per_m < least_n_per_m ? "the limit of the device"
         : limits.quantisation_n_per_m < limits.sampling_n_per_m
-            ? fmt::format("its friction of {:.3g} N and steps of {:.3g} mm", device.friction_n,
-                          1e3 * device.quantum_m)
+            ? fmt::format("its friction of {:.3g} N and position steps of {:.3g} mm",
+                          device.friction_n, 1e3 * device.quantum_m)
             : fmt::format("its damping of {:.3g} N s/m{}, delay of {:.3g} ms and the period of "
                           "{:.3g} ms",
                           device.damping_n_s_per_m, of_surface, 1e3 * device.delay_s,
                           1e3 * period_s);
-    return fmt::format(", of {:.4g} asked for: by {}", asked_n_per_m, cause);
+    return fmt::format(" instead of {:.4g} N/m because of {}", asked_n_per_m, cause);
 }
 
 std::string tool_line(const Options& options, const ToolSetup& tool, const Controller& controller,
@@ -244,11 +251,12 @@ std::string tool_line(const Options& options, const ToolSetup& tool, const Contr
                  stiffness_limit(device.limits, tool.conditioner.period_s, damping_n_s_per_m));
     const std::string wall =
         stiffest < kSoftestFelt_n_per_m
-            ? "NOTHING WILL BE FELT: the device's own damping, friction and rate allow no wall"
-            : fmt::format("a wall of {:.4g} N/m{}", stiffest,
+            ? "NOTHING WILL BE FELT: the damping, friction and rate of the device allow no stiff "
+              "contact"
+            : fmt::format("stiffness up to {:.4g} N/m{}", stiffest,
                           stiffest < asked ? softened_by(tool, damping_n_s_per_m, asked) : "");
     const std::string where = device.workspace_radius_m < kPoseReachMax_m
-                                  ? fmt::format("{:.3g} m round {}", device.workspace_radius_m,
+                                  ? fmt::format("{:.3g} m around {}", device.workspace_radius_m,
                                                 text_of(Vec3(centre[0], centre[1], centre[2])))
                                   : "anywhere"; // A simulated operator that follows an object.
     return fmt::format("{:<12}{} on {}, {}: {}{}; {}\n", "tool", tool.shape, device.name, where,

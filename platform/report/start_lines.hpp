@@ -10,9 +10,9 @@
 namespace tactus::hrtc
 {
 
-/// Lines on the objects, their places, and the tools: one for each object, or one for many, and one
-/// for each tool. They warn of objects out of reach and of walls too soft to feel. They name
-/// defaults if other objects have given values.
+/// Lines on the objects and tools before the run: one for each object, or one for many, and one or
+/// two for each tool. They warn of objects out of reach and of walls too soft to feel. They name
+/// default places and materials if other objects have given ones.
 [[nodiscard]] std::string start_lines(const Options& options, const Controller& controller);
 
 } // namespace tactus::hrtc

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 /// takes to arrive.
 constexpr double kDataLimitedShare = 0.25;
 
-/// Collects the complaints.
+/// Derives the complaints from a report.
 class Judge
 {
 public:
@@ -52,7 +52,8 @@ private:
     {
         return report_["safety"]["begun"].value(cause, std::uint64_t{0});
     }
-    /// True if the loop was late because of the machine. A watchdog alone may be the device's.
+    /// True if the machine made the loop late: there was a stall and no overrun. A watchdog without
+    /// a stall may be the device's.
     [[nodiscard]] bool is_latency_miss() const
     {
         return begun("stall") > 0 && report_["deadline"]["overrun"].get<std::uint64_t>() == 0;
@@ -70,9 +71,9 @@ private:
 
 void Judge::judge_scene()
 {
-    if (report_["wire"]["host_lost"].get<bool>())
+    if (report_["wire"]["server_lost"].get<bool>())
     {
-        say_loss(RunPart::scene, "the host went away");
+        say_loss(RunPart::scene, "the server was lost");
     }
     judge_models();
     if (const auto limited = report_["scene"]["limited"].get<std::uint64_t>(); limited > 0)
@@ -86,7 +87,7 @@ void Judge::judge_scene()
         if (const Json& inside = report_["tools"][i]["begins_inside"]; !inside.is_null())
         {
             say(RunPart::scene,
-                fmt::format("tool {} began inside {}, whose surface then holds it from within", i,
+                fmt::format("tool {} began inside {}, and the surface keeps it inside", i,
                             inside.get<std::string>()));
         }
     }
@@ -107,14 +108,15 @@ void Judge::judge_models()
         }
         if (const auto overdue = model["pieces_overdue"].get<std::uint64_t>(); overdue > 0)
         {
-            say_loss(RunPart::scene, fmt::format("{} of {} that didn't come within 1 s, {} never",
+            say_loss(RunPart::scene, fmt::format("{} of {} did not arrive within 1 s, {} never",
                                                  counted(overdue, "piece"), name,
                                                  model["pieces_missing"].get<std::uint64_t>()));
         }
     }
 }
 
-/// Judges the answers, and names the limit that kept them from being exact.
+/// Complains of stale answers, of a run without exact answers, and of data-limited tools with the
+/// limit that caused it.
 void Judge::judge_answers()
 {
     const Json& answers = report_["answers"];
@@ -155,21 +157,21 @@ std::string Judge::why_untouched() const
             answers["within_tolerance"].get<std::uint64_t>() ==
         0)
     {
-        return "no tool came near an object; the lines at the start say where they are";
+        return "no tool came near an object; the lines at the start give their positions";
     }
     for (const auto& [cause, times] : report_["safety"]["begun"].items())
     {
         const bool is_moment = cause == "software" || cause == "stall" || cause == "watchdog";
         if (times.get<std::uint64_t>() > 0 && !is_moment)
         {
-            return fmt::format("the force was off for {}", cause);
+            return fmt::format("the force was off, cause {}", cause);
         }
     }
     if (report_["force"]["data_limited_share"].get<double>() > 0.0)
     {
-        return "the tool was data-limited before the surface";
+        return "the tool was data-limited before it reached the surface";
     }
-    return "a tool came near, and the run ended before it reached the surface";
+    return "a tool came near, but the run ended before a contact";
 }
 
 void Judge::judge_controller()
@@ -195,7 +197,7 @@ void Judge::judge_controller()
     }
 }
 
-/// Lists the causes of fades, except for those in other complaints.
+/// Complains of the causes of fades, except those that other complaints name.
 void Judge::judge_forces()
 {
     std::string causes;
@@ -210,11 +212,11 @@ void Judge::judge_forces()
     }
     if (!causes.empty())
     {
-        say(RunPart::controller, "force off for: " + causes);
+        say(RunPart::controller, "force off, causes: " + causes);
     }
     if (const std::uint64_t gone = begun("disconnect"); gone > 0)
     {
-        say_loss(RunPart::controller, fmt::format("devices gone: {}", gone));
+        say_loss(RunPart::controller, counted(gone, "device disconnection"));
     }
 }
 
@@ -227,13 +229,14 @@ void Judge::judge_walls()
         if (!softest.is_null() && softest.get<double>() < kSoftestFelt_n_per_m)
         {
             say_loss(RunPart::controller,
-                     fmt::format("tool {}: a wall of {:.2g} N/m, which no hand feels", i,
+                     fmt::format("tool {}: a stiffness of {:.2g} N/m, too soft to feel", i,
                                  softest.get<double>()));
         }
     }
 }
 
-/// Judges the machine. A stall is a fade of a few milliseconds, so it doesn't count as a force off.
+/// Judges the machine. A stall fades the force for milliseconds only, so it doesn't count as "force
+/// off".
 void Judge::judge_machine()
 {
     const auto stopped = report_["deadline"]["stopped"].get<std::uint64_t>();
@@ -246,13 +249,12 @@ void Judge::judge_machine()
     const auto brakes = report_["safety"]["supervisor_brakes"].get<std::uint64_t>();
     if (is_latency_miss())
     {
-        say(RunPart::machine,
-            fmt::format("it woke the loop late, and the force faded for a moment {}{}: 'hrtc "
-                        "doctor' says why",
-                        counted(late, "time"),
-                        brakes > 0
-                            ? fmt::format(" ({} by the supervisor)", counted(brakes, "brake"))
-                            : ""));
+        say(RunPart::machine, fmt::format("the loop was woken late, and the force faded for a "
+                                          "moment {}{}: 'hrtc doctor' lists the causes",
+                                          counted(late, "time"),
+                                          brakes > 0 ? fmt::format(" ({} by the supervisor)",
+                                                                   counted(brakes, "brake"))
+                                                     : ""));
     }
     else if (brakes > 0)
     {

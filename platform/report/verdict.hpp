@@ -12,10 +12,10 @@
 namespace tactus::hrtc
 {
 
-/// Subject of a complaint.
+/// Part of a run that a complaint is about.
 enum class RunPart : std::uint8_t
 {
-    scene,      ///< Mesh, scene and their hosts.
+    scene,      ///< Mesh, scene and their servers.
     controller, ///< This program, its options and devices.
     machine,    ///< Machine of the loop.
 };
@@ -25,7 +25,7 @@ struct Complaint
 {
     RunPart part;
     std::string words;
-    bool is_loss{false}; ///< True for a loss or an empty result, which fails with --strict.
+    bool is_loss{false}; ///< True for a loss or an empty result; --strict makes it a failure.
 
     [[nodiscard]] bool operator==(const Complaint&) const = default;
 };

@@ -17,8 +17,8 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Largest surface damping, in N s/m, with which the device still allows this stiffness, which it
-/// allows undamped. Rounded down to thousandths.
+/// Largest surface damping, in N s/m, with which the device still allows this stiffness. The device
+/// must allow it undamped. Rounded down to thousandths.
 double largest_damping(const DeviceLimits& device, double period_s, double wall_n_per_m)
 {
     double enough = 0.0;
@@ -45,11 +45,12 @@ std::optional<std::string> wall_refused(const ToolSetup& tool, const std::string
     }
     const double wall_n_per_m =
         std::min({tool.spec.stiffness_n_per_m, material.stiffness_n_per_m, 0.5 * bare_n_per_m});
-    return fmt::format("a damping of {:.4g} N s/m on '{}' leaves the device {} no wall at {:.6g} "
-                       "Hz; at most {:.3g} leave it one that is felt, {:.3g} one of {:.4g} N/m",
-                       damping, name, device.name, 1.0 / period_s,
-                       largest_damping(device.limits, period_s, kSoftestFelt_n_per_m),
-                       largest_damping(device.limits, period_s, wall_n_per_m), wall_n_per_m);
+    return fmt::format(
+        "a damping of {:.4g} N s/m on '{}' is too high for the device {} at {:.6g} Hz; at most "
+        "{:.3g} N s/m leaves a stiffness that can be felt, at most {:.3g} N s/m one of {:.4g} N/m",
+        damping, name, device.name, 1.0 / period_s,
+        largest_damping(device.limits, period_s, kSoftestFelt_n_per_m),
+        largest_damping(device.limits, period_s, wall_n_per_m), wall_n_per_m);
 }
 
 } // namespace
@@ -65,7 +66,8 @@ std::optional<std::string> why_unfelt(const std::string& name, const Material& m
     return why;
 }
 
-/// The tool's remaining stiffness may belong to another object that it touches beside this one.
+/// The tool's stiffness counts, not the material's: the tool may touch a stiffer object at the same
+/// time, and the damping limits that wall, too.
 Material limited(const Material& material, std::span<const ToolSetup> tools)
 {
     Material felt = within_ranges(material);

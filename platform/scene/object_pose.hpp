@@ -9,11 +9,11 @@
 namespace tactus::hrtc
 {
 
-/// A host's pose in the frame's form. The quaternion must not be zero but may have any length; the
+/// Similarity of a server's pose. The quaternion must not be zero but may have any length; the
 /// rotation is orthonormal to 2e-15.
 [[nodiscard]] Similarity to_similarity(const Pose& pose);
 
-/// Pose of an object of this model at `place`, for the model's present revision.
+/// Pose at `place` of an object of the model with this header and its revision.
 [[nodiscard]] ObjectPose object_pose(const Similarity& place, const ModelHeader& header);
 
 } // namespace tactus::hrtc

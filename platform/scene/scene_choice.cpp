@@ -28,17 +28,19 @@ namespace
 
 constexpr std::chrono::milliseconds kPause{2};
 
-/// Time after which a host that reports no objects is treated as having none, without a scene.
+/// Longest wait for the objects of servers without a scene; a server may have none.
 constexpr std::chrono::seconds kPlacesMax{3};
 
-/// Number of candidate hosts at the same time; only an attack could exceed it.
+/// Largest number of servers considered at once; only an attack could exceed it.
 constexpr std::size_t kMaxCandidates = 256;
 
-/// Takes the host's objects of the models that it serves.
+/// Sets the options' models to all that the scene's server serves, and the objects to those with
+/// such a model.
 void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& catalogue,
                   const dds::SceneReader& reader)
 {
-    const std::vector<const dds::Catalogue::Offer*> offers = catalogue.offers_of(scene.host_epoch);
+    const std::vector<const dds::Catalogue::Offer*> offers =
+        catalogue.offers_of(scene.server_epoch);
     options.models.clear();
     for (const dds::Catalogue::Offer* offer : offers)
     {
@@ -46,11 +48,11 @@ void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& cat
     }
     options.objects.clear();
     scene.objects.clear();
-    for (const auto& [number, object] : reader.objects(scene.host_epoch))
+    for (const auto& [number, object] : reader.objects(scene.server_epoch))
     {
         const auto offer =
             std::ranges::find(offers, object.shown.model, &dds::Catalogue::Offer::hash);
-        if (offer != offers.end()) // Otherwise the keeper names it during the run.
+        if (offer != offers.end()) // SceneKeeper logs the others during the run.
         {
             const ShownObject& shown = object.shown;
             options.objects.push_back(
@@ -58,30 +60,31 @@ void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& cat
                  .place = to_similarity(shown.pose),
                  .material = options.scene_materials.felt(shown.name, shown.material),
                  .name = shown.name});
-            scene.objects.push_back({scene.host_epoch, number});
+            scene.objects.push_back({scene.server_epoch, number});
         }
     }
 }
 
-/// Takes the scene of the first host that has shown all. If there is none yet, returns the reason.
+/// Takes the scene of the first server that has shown all its objects. If there is none yet,
+/// returns the reason.
 std::optional<std::string> try_take(Options& options, const ModelSelector& selector,
                                     ShownScene& scene, const dds::Catalogue& catalogue,
                                     dds::SceneReader& reader)
 {
-    std::vector<std::uint64_t> hosts;
+    std::vector<std::uint64_t> servers;
     for (const dds::Catalogue::Offer* offer : catalogue.servers_of_scene(selector))
     {
-        if (hosts.size() < kMaxCandidates)
+        if (servers.size() < kMaxCandidates)
         {
-            hosts.push_back(offer->host_epoch);
+            servers.push_back(offer->server_epoch);
         }
     }
-    reader.poll(hosts, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
-    for (const std::uint64_t host : hosts)
+    reader.poll(servers, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
+    for (const std::uint64_t server : servers)
     {
-        if (reader.is_complete(host) && !reader.objects(host).empty())
+        if (reader.is_complete(server) && !reader.objects(server).empty())
         {
-            scene.host_epoch = host;
+            scene.server_epoch = server;
             take_objects(options, scene, catalogue, reader);
             if (!options.objects.empty())
             {
@@ -89,15 +92,16 @@ std::optional<std::string> try_take(Options& options, const ModelSelector& selec
             }
         }
     }
-    if (hosts.empty())
+    if (servers.empty())
     {
         return fmt::format("is not shown on domain {} (scenes there: {})", options.domain,
                            catalogue.scene_names());
     }
-    return std::ranges::all_of(hosts, [&](std::uint64_t host) { return reader.is_complete(host); })
-               ? fmt::format("shows no object of a model that its host serves on domain {}",
+    return std::ranges::all_of(servers,
+                               [&](std::uint64_t server) { return reader.is_complete(server); })
+               ? fmt::format("has no object with a model that its server serves on domain {}",
                              options.domain)
-               : fmt::format("is there on domain {}, but not all its objects have come{}{}",
+               : fmt::format("is on domain {}, but not all of its objects have arrived{}{}",
                              options.domain, reader.fault().empty() ? "" : "; ", reader.fault());
 }
 
@@ -117,7 +121,7 @@ std::optional<Refusal> check_counts(const Options& options)
     }
     if (options.objects_max != 0 && options.objects_max < options.objects.size())
     {
-        return failure(fmt::format("--objects: {}; {} are there from the start",
+        return failure(fmt::format("--objects: {} is less than the {} objects at the start",
                                    options.objects_max, options.objects.size()));
     }
     return std::nullopt;
@@ -186,7 +190,7 @@ Result<ShownScene, Refusal> take_shown_scene(Options& options, dds::DdsClient& c
     if (const std::string line = options.scene_materials.missing(names_of(options)); !line.empty())
     {
         log_message(LogLevel::info, "hrtc",
-                    "note: " + line + "; one that comes later will feel so");
+                    "note: " + line + "; an object added later with this name gets the material");
     }
     if (options.objects_max == 0)
     {
@@ -202,25 +206,25 @@ void take_first_places(Options& options, std::span<const ServedModel> models,
 {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
-    std::vector<std::uint64_t> hosts;
+    std::vector<std::uint64_t> servers;
     for (const ServedModel& model : models)
     {
-        if (std::ranges::find(hosts, model.host_epoch) == hosts.end())
+        if (std::ranges::find(servers, model.server_epoch) == servers.end())
         {
-            hosts.push_back(model.host_epoch);
+            servers.push_back(model.server_epoch);
         }
     }
-    const auto is_complete = [&](std::uint64_t host) { return reader.is_complete(host); };
-    while (!std::ranges::all_of(hosts, is_complete) && Clock::now() - start < kPlacesMax &&
+    const auto is_complete = [&](std::uint64_t server) { return reader.is_complete(server); };
+    while (!std::ranges::all_of(servers, is_complete) && Clock::now() - start < kPlacesMax &&
            goes_on())
     {
         client.exchange().step();
-        reader.poll(hosts, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
+        reader.poll(servers, [](dds::SceneNews /*news*/, const dds::SeenObject& /*object*/) {});
         std::this_thread::sleep_for(kPause);
     }
     for (std::size_t i = 0; i < models.size(); ++i)
     {
-        const auto& shown = reader.objects(models[i].host_epoch);
+        const auto& shown = reader.objects(models[i].server_epoch);
         const auto first = std::ranges::find_if(
             shown, [&](const auto& entry) { return entry.second.shown.model == models[i].hash; });
         const auto ours = std::ranges::find(options.objects, i, &PlacedObject::model);

@@ -23,7 +23,7 @@ SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
     , scene_(std::move(scene.name))
     , materials_(std::move(scene.materials))
     , log_(std::move(log))
-    , model_hosts_(parts_.models.size())
+    , model_servers_(parts_.models.size())
     , first_(parts_.first_objects)
     , slots_(parts_.objects_max)
     , counts_(parts_.models.size())
@@ -35,7 +35,7 @@ SceneKeeper::SceneKeeper(std::span<const dds::Authority> authorities,
     }
     if (!scene_.empty())
     {
-        hosts_.assign(1, scene.host_epoch);
+        servers_.assign(1, scene.server_epoch);
     }
     for (std::uint32_t place = 0; place < slots_.size(); ++place)
     {
@@ -62,7 +62,7 @@ void SceneKeeper::connect(SceneMailbox& mailbox, MonotonicTime now, NameSink nam
     names_ = std::move(names);
     for (const auto& [name, place] : places_) // Objects added since are added in the first step.
     {
-        const auto& objects = reader_->objects(name.host_epoch);
+        const auto& objects = reader_->objects(name.server_epoch);
         if (const auto object = objects.find(name.number); object != objects.end())
         {
             move(place, object->second, now);
@@ -75,29 +75,29 @@ void SceneKeeper::step(MonotonicTime now)
 {
     if (scene_.empty())
     {
-        follow_model_hosts(now);
+        follow_model_servers(now);
     }
     else
     {
-        follow_scene_host();
+        follow_scene_server();
     }
-    reader_->poll(hosts_, [&](dds::SceneNews news, const dds::SeenObject& object)
+    reader_->poll(servers_, [&](dds::SceneNews news, const dds::SeenObject& object)
                   { take_news(news, object, now); });
     pass_on(now);
     offer_left_out(now);
     hear(now);
 }
 
-std::optional<HostObject> SceneKeeper::shown_as(std::uint32_t object) const
+std::optional<ServerObject> SceneKeeper::shown_as(std::uint32_t object) const
 {
     return object < slots_.size() ? slots_[object].bound : std::nullopt;
 }
 
-/// Removes the objects of a host that another host replaces.
-void SceneKeeper::follow_scene_host()
+/// If another server has the authority now, removes our objects, so that its objects can be added.
+void SceneKeeper::follow_scene_server()
 {
-    const std::uint64_t epoch = authorities_.front().host();
-    if (hosts_.front() == epoch)
+    const std::uint64_t epoch = authorities_.front().server();
+    if (servers_.front() == epoch)
     {
         return;
     }
@@ -108,30 +108,30 @@ void SceneKeeper::follow_scene_host()
     passed_over_.clear();
     left_out_.clear();
     limited_.clear();
-    hosts_.assign(1, epoch);
+    servers_.assign(1, epoch);
 }
 
-void SceneKeeper::follow_model_hosts(MonotonicTime now)
+void SceneKeeper::follow_model_servers(MonotonicTime now)
 {
-    hosts_.clear();
-    for (std::size_t i = 0; i < model_hosts_.size(); ++i)
+    servers_.clear();
+    for (std::size_t i = 0; i < model_servers_.size(); ++i)
     {
-        const std::uint64_t epoch = authorities_[i].host();
-        if (model_hosts_[i] != epoch)
+        const std::uint64_t epoch = authorities_[i].server();
+        if (model_servers_[i] != epoch)
         {
-            model_hosts_[i] = epoch;
+            model_servers_[i] = epoch;
             find_first(i, now);
         }
-        if (std::ranges::find(hosts_, epoch) == hosts_.end())
+        if (std::ranges::find(servers_, epoch) == servers_.end())
         {
-            hosts_.push_back(epoch);
+            servers_.push_back(epoch);
         }
     }
 }
 
 void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, MonotonicTime now)
 {
-    const HostObject name{object.host_epoch, object.number};
+    const ServerObject name{object.server_epoch, object.number};
     const auto bound = places_.find(name);
     if (news == dds::SceneNews::moves && bound != places_.end())
     {
@@ -148,10 +148,10 @@ void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, 
     }
     if (scene_.empty())
     {
-        for (std::size_t i = 0; i < model_hosts_.size(); ++i)
+        for (std::size_t i = 0; i < model_servers_.size(); ++i)
         {
-            const bool is_of_it =
-                model_hosts_[i] == object.host_epoch && parts_.models[i].hash == object.shown.model;
+            const bool is_of_it = model_servers_[i] == object.server_epoch &&
+                                  parts_.models[i].hash == object.shown.model;
             if (is_of_it && news != dds::SceneNews::moves)
             {
                 find_first(i, now);
@@ -175,7 +175,8 @@ void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, 
     }
 }
 
-/// Finds the host's object of that model with the least number; none if none of ours shows it.
+/// Lets our first object of the model follow the server's object of that model with the least
+/// number; if there is none, our object follows none.
 void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
 {
     const std::uint32_t place = first_[model];
@@ -183,7 +184,7 @@ void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
     {
         return;
     }
-    const auto& objects = reader_->objects(model_hosts_[model]);
+    const auto& objects = reader_->objects(model_servers_[model]);
     const auto first =
         std::ranges::find_if(objects, [&](const auto& entry)
                              { return entry.second.shown.model == parts_.models[model].hash; });
@@ -191,7 +192,7 @@ void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
     {
         unbind(place);
     }
-    else if (slots_[place].bound != HostObject{first->second.host_epoch, first->first})
+    else if (slots_[place].bound != ServerObject{first->second.server_epoch, first->first})
     {
         bind(place, first->second, now);
     }
@@ -201,10 +202,10 @@ void SceneKeeper::find_first(std::size_t model, MonotonicTime now)
     }
 }
 
-/// Adds an object of the scene that is not ours yet.
+/// Adds a server's object that we don't have yet, or logs why it can't be touched.
 void SceneKeeper::offer(const dds::SeenObject& object, MonotonicTime now)
 {
-    const Generation name{{object.host_epoch, object.number}, object.generation};
+    const Generation name{{object.server_epoch, object.number}, object.generation};
     if (passed_over_.contains(name) || left_out_.contains(name))
     {
         return;
@@ -215,9 +216,9 @@ void SceneKeeper::offer(const dds::SeenObject& object, MonotonicTime now)
         passed_over_.insert(name);
         ++news_.passed_over;
         log_.write(
-            fmt::format("object '{}' is not touched: its model {} is {}", object.shown.name,
+            fmt::format("object '{}' can't be touched: its model {} is {}", object.shown.name,
                         hash_text(object.shown.model),
-                        model ? "that of a tool" : "none of those that were there at the start"));
+                        model ? "the model of a tool" : "not one of the models at the start"));
         return;
     }
     if (!free_.empty())
@@ -227,8 +228,7 @@ void SceneKeeper::offer(const dds::SeenObject& object, MonotonicTime now)
     }
     left_out_.insert(name);
     ++news_.passed_over;
-    log_.write(fmt::format("object '{}' is not touched: there are {} already; --objects makes room "
-                           "for more",
+    log_.write(fmt::format("object '{}' can't be touched: --objects allows {}; use a larger value",
                            object.shown.name, slots_.size()));
 }
 
@@ -236,7 +236,7 @@ void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, Monot
 {
     unbind(place);
     Slot& slot = slots_[place];
-    const HostObject name{object.host_epoch, object.number};
+    const ServerObject name{object.server_epoch, object.number};
     places_[name] = place;
     slot.bound = name;
     slot.known = {};
@@ -272,7 +272,8 @@ void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, Monot
     }
 }
 
-/// If several changes arrive while the queue is full, only the newest is sent.
+/// Changes the material of our object. If several changes arrive while the queue is full, only the
+/// newest is sent.
 void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
 {
     Slot& slot = slots_[place];
@@ -289,8 +290,9 @@ void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
     }
 }
 
-/// A stiffness limit of a device holds against servers and --material.
-Material SceneKeeper::felt(const HostObject& object, const ShownObject& shown)
+/// Material for the frame: the one of --material or else the server's, limited by limited(). Logs
+/// the first limit of each object.
+Material SceneKeeper::felt(const ServerObject& object, const ShownObject& shown)
 {
     const Material& wanted = materials_.felt(shown.name, shown.material);
     const Material material = limited(wanted, parts_.tools);
@@ -360,14 +362,14 @@ void SceneKeeper::pass_on(MonotonicTime now)
     }
 }
 
-/// Binds left-out objects as far as there is room now.
+/// Adds the objects of left_out_ while there is room.
 void SceneKeeper::offer_left_out(MonotonicTime now)
 {
     while (!free_.empty() && !left_out_.empty())
     {
-        const HostObject name = left_out_.begin()->first;
+        const ServerObject name = left_out_.begin()->first;
         left_out_.erase(left_out_.begin());
-        const auto& objects = reader_->objects(name.host_epoch);
+        const auto& objects = reader_->objects(name.server_epoch);
         if (const auto object = objects.find(name.number); object != objects.end())
         {
             bind(*free_.begin(), object->second, now);
@@ -375,10 +377,10 @@ void SceneKeeper::offer_left_out(MonotonicTime now)
     }
 }
 
-/// Records the hosts that were heard, and their counts.
+/// Notes which servers were heard, and adds their objects' new pose counts.
 void SceneKeeper::hear(MonotonicTime now)
 {
-    for (const std::uint64_t epoch : hosts_)
+    for (const std::uint64_t epoch : servers_)
     {
         if (!reader_->was_heard(epoch))
         {
@@ -386,7 +388,7 @@ void SceneKeeper::hear(MonotonicTime now)
         }
         const auto& objects = reader_->objects(epoch);
         for (auto at = places_.lower_bound({epoch, 0});
-             at != places_.end() && at->first.host_epoch == epoch; ++at)
+             at != places_.end() && at->first.server_epoch == epoch; ++at)
         {
             Slot& slot = slots_[at->second];
             const std::size_t model = slot.spec.model.value;
@@ -408,11 +410,12 @@ void SceneKeeper::hear(MonotonicTime now)
     }
 }
 
-/// Pose of the source mesh, like the controller's poses.
+/// Pose of our object for the server's pose, as Controller::poses() has them, with the server's
+/// time.
 ObjectPose SceneKeeper::pose_of(std::size_t model, const dds::SeenObject& object) const
 {
     ObjectPose pose = object_pose(to_similarity(object.shown.pose), headers_[model]);
-    pose.stamp_ns = object.host_time_ns;
+    pose.stamp_ns = object.server_time_ns;
     return pose;
 }
 

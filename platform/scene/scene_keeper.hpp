@@ -26,48 +26,52 @@
 namespace tactus::hrtc
 {
 
-/// Counts of a scene's changes since the start.
+/// Counts of the scene's changes since the start.
 struct SceneNewsCounts
 {
-    std::uint64_t came{0};            ///< Objects added to the frame.
-    std::uint64_t went{0};            ///< Objects removed from the frame.
-    std::uint64_t feels{0};           ///< Materials changed in the frame.
-    std::uint64_t limited{0};         ///< Materials limited to less than their server's.
+    std::uint64_t came{0};  ///< Objects added to the frame.
+    std::uint64_t went{0};  ///< Objects removed from the frame.
+    std::uint64_t feels{0}; ///< Materials changed in the frame.
+    /// Times that the material of an object was limited (limited()).
+    std::uint64_t limited{0};
     std::uint64_t passed_over{0};     ///< Objects that can't be touched: no such model, or no room.
-    std::uint64_t motion_regained{0}; ///< See dds::SceneReader.
+    std::uint64_t motion_regained{0}; ///< dds::SceneReader::motion_regained().
 };
 
-/// Keeps the controller's objects at the poses of the hosts. Transport thread.
+/// Passes the objects' poses, and a scene's changes, from servers to the frame's mailbox. Transport
+/// thread.
 ///
-/// A scene has all objects of its authoritative host: they are added, moved and removed with it. If
-/// the host is gone, they stay and become stale; if another host replaces it, they are removed and
-/// its objects added.
+/// With a scene, the controller has all objects of the scene's authoritative server, and adds,
+/// moves and removes them with it. If the server is gone, they stay and become stale. If another
+/// server replaces it, they are removed and its objects added.
 ///
-/// Without a scene, the first object that shows a model follows one object of the model's
-/// authoritative host: the one with the least number of those with that model.
+/// Without a scene, the first object of each model follows an object of the model's authoritative
+/// server: the one with the least number among those with that model.
 class SceneKeeper
 {
 public:
-    /// `reader` has followed the scene's host, if there is a scene. `authorities`: the scene's, or
-    /// one a model; stepped by the caller. They and the parts must outlive it. `log` gets a line
-    /// for each object that can't be touched, and for each material that is limited.
+    /// `reader` must have followed the scene's server, if there is a scene. `authorities`: the
+    /// scene's, or one a model; the caller steps them. They and the parts must outlive the keeper.
+    /// `log` gets a line for each object that can't be touched, and for each object whose material
+    /// is limited.
     SceneKeeper(std::span<const dds::Authority> authorities,
                 std::unique_ptr<dds::SceneReader> reader, SceneParts parts, ShownScene scene,
                 Log log);
 
-    /// Sink of an object's number, its generation and its name when it is added.
+    /// Receives number, generation and name of each object that is added during the run.
     using NameSink = std::function<void(std::uint32_t, std::uint32_t, const std::string&)>;
 
-    /// Connects the output; call it first. Both live as long as the run, and `names` may be empty.
+    /// Connects the output. Call it before the first step(). `mailbox` and `names` must live as
+    /// long as the run; `names` may be empty.
     void connect(SceneMailbox& mailbox, MonotonicTime now, NameSink names = {});
-    /// Never waits.
+    /// Takes the servers' news and passes changes to the mailbox. Never waits.
     void step(MonotonicTime now);
 
-    /// Host object whose pose our object has; none if no host shows it.
-    [[nodiscard]] std::optional<HostObject> shown_as(std::uint32_t object) const;
-    /// Pose counts of all our objects that show the model.
+    /// Server's object that our object of this number follows; none if no server shows it.
+    [[nodiscard]] std::optional<ServerObject> shown_as(std::uint32_t object) const;
+    /// Pose counts, summed over our objects with the model.
     [[nodiscard]] const dds::PoseCounts& counts(std::size_t model) const { return counts_[model]; }
-    /// Time when a host that shows the model was last heard; 0: never.
+    /// Time when a server that shows the model was last heard; 0: never.
     [[nodiscard]] MonotonicTime heard(std::size_t model) const { return heard_[model]; }
     [[nodiscard]] SceneNewsCounts news() const noexcept
     {
@@ -77,25 +81,25 @@ public:
     }
 
 private:
-    /// An object of a host, and the generation under its number.
-    using Generation = std::pair<HostObject, std::uint32_t>;
+    /// Server's object, with its generation: a number may be used again for another object.
+    using Generation = std::pair<ServerObject, std::uint32_t>;
 
     /// One object of the controller.
     struct Slot
     {
-        std::optional<HostObject> bound;
-        std::string name; ///< Name; empty unless the object was added later.
+        std::optional<ServerObject> bound;
+        std::string name; ///< Name of an object added during the run; else empty.
         ObjectSpec spec;
         ObjectPose pose;         ///< Newest pose.
-        dds::PoseCounts known;   ///< Part in `counts_` of the host's object.
-        bool is_resident{false}; ///< True if it should be in the frame's scene.
-        bool is_told{false};     ///< True if the frame knows it, or the change is queued.
+        dds::PoseCounts known;   ///< Pose counts of the server's object that `counts_` includes.
+        bool is_resident{false}; ///< True if the object is to be in the frame's scene.
+        bool is_told{false};     ///< True if it is there, or its addition is queued.
         bool owes_feel{false};   ///< True if a change of its material is still to be queued.
         std::uint32_t generation{0};
     };
 
-    void follow_scene_host();
-    void follow_model_hosts(MonotonicTime now);
+    void follow_scene_server();
+    void follow_model_servers(MonotonicTime now);
     void take_news(dds::SceneNews news, const dds::SeenObject& object, MonotonicTime now);
     void find_first(std::size_t model, MonotonicTime now);
     void offer(const dds::SeenObject& object, MonotonicTime now);
@@ -104,7 +108,7 @@ private:
     void unbind(std::uint32_t place);
     void move(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
     void feel(std::uint32_t place, const ShownObject& shown);
-    [[nodiscard]] Material felt(const HostObject& object, const ShownObject& shown);
+    [[nodiscard]] Material felt(const ServerObject& object, const ShownObject& shown);
     void leave(std::uint32_t place);
     void pass_on(MonotonicTime now);
     void hear(MonotonicTime now);
@@ -120,16 +124,19 @@ private:
     std::vector<ModelHeader> headers_; ///< Headers of the parts' models, as views.
     SceneMailbox* mailbox_{nullptr};
     NameSink names_;
-    std::vector<std::uint64_t> hosts_;       ///< Hosts that are followed.
-    std::vector<std::uint64_t> model_hosts_; ///< Host of each model without a scene, or 0.
-    std::vector<std::uint32_t> first_;       ///< Object of each model without a scene.
+    std::vector<std::uint64_t> servers_; ///< Epochs of the followed servers.
+    /// Epoch of each model's server without a scene, or 0.
+    std::vector<std::uint64_t> model_servers_;
+    /// First object of each model, used without a scene.
+    std::vector<std::uint32_t> first_;
     std::vector<Slot> slots_;
-    std::map<HostObject, std::uint32_t> places_; ///< Places of bound objects.
-    std::set<std::uint32_t> free_;               ///< Places without an object.
-    std::set<Generation> passed_over_;           ///< Objects that can't be touched.
-    std::set<Generation> left_out_;              ///< Objects beyond the capacity.
-    std::set<HostObject> limited_;               ///< Objects with a line on their limited material.
-    /// Places where is_resident and is_told differ, or a material is owed.
+    std::map<ServerObject, std::uint32_t> places_; ///< Our numbers of the servers' bound objects.
+    std::set<std::uint32_t> free_;                 ///< Our numbers without an object.
+    /// Objects with no model of ours, or with a tool's.
+    std::set<Generation> passed_over_;
+    std::set<Generation> left_out_;  ///< Objects without room, added when room comes.
+    std::set<ServerObject> limited_; ///< Objects whose limited material was logged.
+    /// Our numbers of the objects whose change is still to be queued.
     std::deque<std::uint32_t> untold_;
     std::vector<dds::PoseCounts> counts_;
     std::vector<MonotonicTime> heard_;

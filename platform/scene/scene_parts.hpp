@@ -14,7 +14,7 @@
 namespace tactus::hrtc
 {
 
-/// A controller's part of a scene at the start. The spans are borrowed.
+/// Parts of the controller's scene at the start. The spans are borrowed.
 struct SceneParts
 {
     std::span<const ServedModel> models;
@@ -25,7 +25,7 @@ struct SceneParts
     std::size_t objects_max{0}; ///< Capacity for objects.
 };
 
-/// True if a tool has the model's shape.
+/// True if the model is the shape of a mesh tool.
 [[nodiscard]] bool is_of_tool(std::span<const ToolSetup> tools, std::size_t model) noexcept;
 
 } // namespace tactus::hrtc

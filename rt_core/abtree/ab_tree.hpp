@@ -20,8 +20,8 @@
 namespace tactus
 {
 
-/// Node states of the 3DIM 2005 paper: *inactive* nodes are not in the tree, *deformed* ones wait
-/// for refit.
+/// States of a node or block, as in the 3DIM 2005 paper: *inactive* ones are not in the tree,
+/// *deformed* ones wait for refit.
 enum class NodeStatus : std::uint8_t
 {
     inactive,
@@ -46,9 +46,9 @@ enum class NodeStatus : std::uint8_t
 /// If the pool is exhausted a face stays *unplaced*: is_complete() is then false and a query may
 /// prove nothing. The caller offers unplaced faces again in later frames.
 ///
-/// A block or node that is freed while it waits for refit returns to the pool after that.
+/// A block or node freed while it waits for refit() returns to the pool there at the latest.
 ///
-/// The bounding volume is a policy (AabbVolume in volume.hpp ships). All memory is the pool's.
+/// The bounding volume is a policy; AbTree uses AabbVolume. All memory is the pool's.
 ///
 /// Haptic thread only.
 template <typename VolumePolicy>
@@ -66,33 +66,32 @@ public:
         std::uint32_t nodes{0};
     };
 
-    /// Pool and kernels must outlive the tree. Blocks and nodes of `least` are reserved for it in
-    /// the pool. Each tree of a pool has its own owner, below kMaxModels.
+    /// Pool and kernels must outlive the tree. `least` blocks and nodes are reserved for it in the
+    /// pool, or as many as are free. Each tree of a pool has another `owner`, below kMaxModels.
     BasicAbTree(Pool& pool, ModelId owner, const TreeCapacities& least, float quantum_m,
                 const Kernels& kernels = best_kernels()) noexcept;
 
-    /// Adds a face; its prim must have none in any tree of the pool.
+    /// Adds a face. No tree of the pool may have a face with the same prim (asserted).
     void insert(const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
-    /// Moves one corner (0 .. 2) of the face and changes its error. Splits and merges do this to
-    /// fan faces, for much less than removing and inserting them. Without effect on an unplaced
-    /// face.
+    /// Moves one corner (0 .. 2) of a face and changes its error, for fan faces of splits and
+    /// merges: cheaper than removal and insertion. No effect on an unplaced face.
     void move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
                      ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
     /// Removes the prim's face, placed or not.
     void remove(PrimId prim) noexcept TACTUS_NONBLOCKING;
 
-    /// Moves a vertex of a block (leaf_of() / 16) with all its faces there. For deforming meshes. A
-    /// vertex has a row in each block whose faces it is a corner of.
+    /// Moves the vertex in `row` of a block (leaf_of() / 16), with all faces of the block that use
+    /// it. For deforming meshes, whose vertices have a row in each block that uses them.
     void move_vertex(std::uint32_t block, std::uint32_t row,
                      const Vec3f& position_m) noexcept TACTUS_NONBLOCKING;
 
-    /// Marks every face as changed, to measure what refit() saves.
+    /// Marks all blocks and nodes of the tree for refit().
     void mark_all() noexcept TACTUS_NONBLOCKING;
 
-    /// Updates all boxes. Visits each dirty block, and each node on a path from one to the root, at
-    /// most once.
+    /// Updates the boxes of marked blocks and nodes, and of all nodes above them whose boxes
+    /// change. Visits each at most once.
     RefitWork refit() noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool is_complete() const noexcept { return first_unplaced_ == kLastUnplaced; }
@@ -102,7 +101,7 @@ public:
         const std::uint32_t leaf = prims_[prim.value].leaf;
         return (leaf & kUnplaced) != 0 && leaf != kNoLeaf;
     }
-    /// Offers each unplaced face once more; `describe(prim)` returns the face as it is now.
+    /// Tries to place each unplaced face; `describe(prim)` returns its present ChangedFace.
     template <typename Describe>
     void offer_unplaced(const Describe& describe) noexcept
     {
@@ -129,13 +128,14 @@ public:
     {
         return pool_->try_promise(share_, least);
     }
-    /// Ends the reservation of a tree that is empty and was refitted since.
+    /// Ends the tree's reservation. The tree must be empty, and refitted since its last removal.
     void end_promise() noexcept TACTUS_NONBLOCKING { pool_->end_promise(share_); }
     /// Blocks and nodes that one more changed face may need at worst.
     static constexpr std::uint32_t kReserve = kBlockFaces + 1;
     [[nodiscard]] bool has_room_for(std::uint32_t changed_faces) const noexcept TACTUS_NONBLOCKING;
 
-    /// Number of the last change, unique in the pool. Proven distances hold while this is the same.
+    /// Number of the tree's last change, unique in the pool. Distances proven for the tree hold
+    /// while the number stays the same.
     [[nodiscard]] std::uint64_t last_change() const noexcept { return last_change_; }
     [[nodiscard]] TreeRef root() const noexcept { return root_; }
     [[nodiscard]] const Node& node(std::uint32_t index) const noexcept { return nodes_[index]; }
@@ -169,18 +169,18 @@ public:
             __builtin_prefetch(&sides_[ref.index()].coarse);
         }
     }
-    /// Volume of the whole tree; empty if the tree is.
+    /// Bounding volume of all faces, errors added; empty if the tree is empty.
     [[nodiscard]] Box box() const noexcept TACTUS_NONBLOCKING;
-    /// The box of one of its nodes or blocks, errors added.
+    /// Bounding volume of a node or block of this tree, errors added.
     [[nodiscard]] Box box_of(TreeRef ref) const noexcept TACTUS_NONBLOCKING;
-    /// The face that a prim stands for: its lasting name, used for ties and answers.
+    /// Lasting id of a prim's face, used to break ties and in answers; none if the prim has no
+    /// face.
     [[nodiscard]] FaceId face_of(PrimId prim) const noexcept
     {
         TACTUS_ASSERT(prim.value < prims_.size());
         return prims_[prim.value].face;
     }
-    /// Block x 16 + lane of a prim, or kNoLeaf. With `parent` of blocks and nodes it gives the path
-    /// to the root.
+    /// Place of a prim's face, block x 16 + lane; kNoLeaf if there is no face or it is unplaced.
     static constexpr std::uint32_t kNoLeaf = TreePrim::kNoLeaf;
     [[nodiscard]] std::uint32_t leaf_of(PrimId prim) const noexcept
     {
@@ -262,8 +262,8 @@ private:
     TreeRef root_;
     std::uint64_t last_change_{0};
     std::uint8_t owner_;
-    TreeShare share_;                     ///< Share, with freed parts that wait for refit.
-    std::uint32_t marked_block_{kNoNode}; ///< Head of its list, like the two below.
+    TreeShare share_; ///< Use of the pool, with freed blocks and nodes that wait for refit.
+    std::uint32_t marked_block_{kNoNode}; ///< First block that waits for refit; kNoNode: none.
     std::uint32_t marked_node_{kNoNode};
     std::uint32_t first_unplaced_{kLastUnplaced};
     std::uint32_t blocks_used_{0};

@@ -13,7 +13,7 @@ template <typename Volume>
 typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
 {
     RefitWork work;
-    // Nodes first: their list shares its links with those of the levels.
+    // Nodes come first: `link` serves the list of marked nodes, then the lists of levels.
     while (marked_node_ != kNoNode)
     {
         const std::uint32_t index = marked_node_;
@@ -95,7 +95,7 @@ void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, con
     enqueue(parent);
 }
 
-/// Returns parts that were freed while they waited for refit.
+/// Returns to the pool the blocks and nodes that were freed while they waited for refit.
 template <typename Volume>
 void BasicAbTree<Volume>::give_back_freed() noexcept
 {
@@ -123,7 +123,8 @@ void BasicAbTree<Volume>::give_back_freed() noexcept
     }
 }
 
-/// Adds a block or node to the list of parts that wait for refit, unless it is there.
+/// Numbers a change of the tree, and adds the block or node to the list that waits for refit unless
+/// it is listed.
 template <typename Volume>
 void BasicAbTree<Volume>::mark(TreeRef ref) noexcept
 {
@@ -166,7 +167,7 @@ void BasicAbTree<Volume>::mark_all() noexcept
     }
 }
 
-/// Adds a node to refit's list of its level, unless it is there.
+/// Adds a node to refit's list of the node's level unless it is listed.
 template <typename Volume>
 void BasicAbTree<Volume>::enqueue(std::uint32_t index) noexcept
 {

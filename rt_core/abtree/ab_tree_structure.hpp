@@ -15,12 +15,12 @@ namespace tactus
 namespace detail
 {
 
-/// Number of faces up to which sibling cells become one block again. A block splits at 16; the gap
-/// keeps a face that comes and goes from splitting it each time.
+/// Largest number of faces with which two sibling cells merge into one block. A block splits beyond
+/// 16; the gap keeps a face that is added and removed repeatedly from splitting it each time.
 inline constexpr std::uint32_t kMergeFaces = 10;
 static_assert(kMergeFaces < kBlockFaces);
 
-/// The highest octal digit in which two different paths differ, as its shift.
+/// Bit position of the highest octal digit in which two different paths differ.
 inline std::uint32_t digit_shift(std::uint64_t a, std::uint64_t b) noexcept
 {
     TACTUS_ASSERT(a != b);
@@ -178,7 +178,8 @@ void BasicAbTree<Volume>::insert_below(TreeRef ref, const ChangedFace& face,
     TACTUS_ASSERT(false && "a path has no more digits than levels");
 }
 
-/// Inserts a face whose path leaves the tree above `node`: a new node takes both.
+/// Inserts a face whose path does not lead below `node`: a new node takes `node` and a block with
+/// the face as children.
 template <typename Volume>
 void BasicAbTree<Volume>::insert_beside(std::uint32_t node, const ChangedFace& face,
                                         std::uint64_t path) noexcept
@@ -193,8 +194,8 @@ void BasicAbTree<Volume>::insert_beside(std::uint32_t node, const ChangedFace& f
     TACTUS_ASSERT(added);
 }
 
-/// Inserts a face at a free digit. If possible, a block beside the digit is widened to the binary
-/// cell that holds both.
+/// Inserts a face at a digit of the node without a child. If possible, a neighbouring block is
+/// widened to the binary cell that holds both.
 template <typename Volume>
 void BasicAbTree<Volume>::insert_at_free_digit(std::uint32_t node_index, const ChangedFace& face,
                                                std::uint32_t digit) noexcept
@@ -244,7 +245,8 @@ void BasicAbTree<Volume>::update(const ChangedFace& face) noexcept
     }
 }
 
-/// Inserts a face that has left its lane of `block` because the rows no longer suffice.
+/// Inserts a face that was removed from `block` because no vertex row was free for its moved
+/// corner. Without a reserve in the pool the face stays unplaced.
 template <typename Volume>
 void BasicAbTree<Volume>::reinsert(std::uint32_t block, const ChangedFace& face) noexcept
 {
@@ -308,8 +310,8 @@ bool BasicAbTree<Volume>::try_add(std::uint32_t block, const ChangedFace& face) 
     return true;
 }
 
-/// Parts the block into smaller binary cells until the face fits into its own. Each round parts off
-/// at least one face, so there are at most as many rounds as faces.
+/// Splits the block into smaller binary cells until the face fits into the cell of its path. Each
+/// round removes at least one face from that cell, so there are at most as many rounds as faces.
 template <typename Volume>
 void BasicAbTree<Volume>::split_block(std::uint32_t block, const ChangedFace& face) noexcept
 {
@@ -339,7 +341,7 @@ void BasicAbTree<Volume>::split_block(std::uint32_t block, const ChangedFace& fa
             return;
         }
     }
-    TACTUS_ASSERT(false && "a face alone fits a block");
+    TACTUS_ASSERT(false && "a single face fits a block");
 }
 
 /// Halves the block's cell by a bit of the paths, above which they all agree with `path`. The lanes
@@ -375,8 +377,8 @@ std::uint32_t BasicAbTree<Volume>::part(std::uint32_t block, std::uint32_t bit, 
     return stays ? block : other;
 }
 
-/// The node of that digit above a block whose paths all agree with `path` above the digit: its
-/// parent, or a new node in between.
+/// Returns the node of the octal digit at `shift` above the block: the block's parent, or a new
+/// node between both. All paths of the block must agree with `path` above that digit.
 template <typename Volume>
 std::uint32_t BasicAbTree<Volume>::node_above(std::uint32_t block, std::uint32_t shift,
                                               std::uint64_t path) noexcept
@@ -406,7 +408,8 @@ std::uint32_t BasicAbTree<Volume>::node_above(std::uint32_t block, std::uint32_t
     return above;
 }
 
-/// Merges a block that lost a face with its sibling cells while both fit into kMergeFaces.
+/// Merges a block that lost a face with its sibling cell, repeatedly, while both have at most
+/// kMergeFaces faces together.
 template <typename Volume>
 void BasicAbTree<Volume>::merge_upward(std::uint32_t block) noexcept
 {
@@ -513,7 +516,7 @@ void BasicAbTree<Volume>::detach(std::uint32_t node_index, std::uint32_t child) 
     mark(TreeRef::to_node(node_index));
 }
 
-/// Puts `new_ref` in the place of `old_ref`: below the same child of the same parent, or at the
+/// Puts `new_ref` in the place of the node `old_ref`: as the same child of its parent, or as the
 /// root.
 template <typename Volume>
 void BasicAbTree<Volume>::replace(TreeRef old_ref, TreeRef new_ref) noexcept

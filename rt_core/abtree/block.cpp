@@ -20,7 +20,7 @@ constexpr std::uint32_t kNoVertex = kBlockVertices;
 
 using Bytes = std::uint8_t __attribute__((vector_size(kBlockFaces)));
 
-/// One bit per lane, like bits_of() for four lanes.
+/// Gathers one bit per byte; each byte must be all ones or all zeros.
 std::uint32_t bits_of_bytes(Bytes lanes) noexcept
 {
 #ifdef __SSE2__
@@ -94,8 +94,8 @@ void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error) noexcept
     side.coarse = static_cast<std::uint16_t>(error == 0 ? side.coarse & ~bit : side.coarse | bit);
 }
 
-/// Keeps the faces in `lanes` and moves them to the first lanes: a kernel skips a half without
-/// faces.
+/// Keeps only the faces in `lanes` and moves them to the first lanes: a kernel skips an empty
+/// second half.
 void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noexcept
 {
     std::size_t to = 0;

@@ -25,9 +25,9 @@ static_assert(kBlockVertices <= 16, "and so are its rows");
 struct alignas(64) BlockGeometry
 {
     std::array<std::array<float, kBlockVertices>, 3> coordinates{}; ///< Rows x, y, z, in metres.
-    std::array<std::array<std::uint8_t, kBlockFaces>, 3> corners{}; ///< Vertex of corner 0, 1, 2.
-    std::uint16_t faces{0};                                         ///< Active lanes.
-    std::uint16_t vertices{0};                                      ///< Rows that they use.
+    std::array<std::array<std::uint8_t, kBlockFaces>, 3> corners{}; ///< Row of corner 0, 1, 2.
+    std::uint16_t faces{0};    ///< Lanes with a face, one bit each.
+    std::uint16_t vertices{0}; ///< Rows with a vertex, one bit each.
 };
 
 static_assert(sizeof(BlockGeometry) == kBlockBytes);
@@ -42,13 +42,14 @@ struct BlockSide
 {
     std::array<PrimId, kBlockFaces> prims{};
     std::array<ErrorCode, kBlockFaces> errors{};
-    std::uint32_t parent{0xFFFF'FFFFU}; ///< Parent node; none for a root block.
-    std::uint32_t link{0xFFFF'FFFFU};   ///< Link in the list of free or of marked blocks.
-    std::uint16_t coarse{0};            ///< Lanes whose error is not 0.
-    std::uint8_t child{0};              ///< Index as child of the parent.
+    /// Parent node, kNoNode for a root block; the next free block while this one is free.
+    std::uint32_t parent{0xFFFF'FFFFU};
+    std::uint32_t link{0xFFFF'FFFFU}; ///< Next block that waits for refit.
+    std::uint16_t coarse{0};          ///< Lanes whose error is not 0.
+    std::uint8_t child{0};            ///< Index as child of the parent.
     bool in_use{false};
     bool is_marked{false}; ///< True while in the list of marked blocks, even once freed.
-    std::uint8_t owner{0}; ///< Owner of its tree.
+    std::uint8_t owner{0}; ///< Model of the block's tree.
     std::array<std::uint8_t, 2> reserved{};
 };
 
@@ -69,8 +70,8 @@ static_assert(sizeof(BlockSide) == 96);
 void remove_from_block(BlockGeometry& block, BlockSide& side,
                        std::uint32_t lane) noexcept TACTUS_NONBLOCKING;
 
-/// Moves the faces in `moved` to an unused block. In both blocks the faces get new lanes, the first
-/// ones.
+/// Moves the faces of the lanes `moved` to `other`, an unused block. Both blocks' faces then occupy
+/// their first lanes.
 void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, BlockGeometry& other,
                  BlockSide& other_side) noexcept TACTUS_NONBLOCKING;
 
@@ -91,12 +92,12 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
 /// The largest error of the block's faces, in quanta.
 [[nodiscard]] float largest_error_quanta(const BlockSide& side) noexcept TACTUS_NONBLOCKING;
 
-/// The lanes whose error is above `tolerance`: with 0 those of BlockSide::coarse.
+/// Lanes whose error exceeds `tolerance`, one bit each; for 0 those of BlockSide::coarse.
 [[nodiscard]] std::uint32_t lanes_above(const BlockSide& side,
                                         ErrorCode tolerance) noexcept TACTUS_NONBLOCKING;
 
-/// Counts the bits of a block's 16 lanes: std::popcount is a call if the processor may lack the
-/// instruction.
+/// Number of set bits among a block's 16 lanes. std::popcount is a library call where the processor
+/// may lack the instruction.
 [[nodiscard]] inline std::uint32_t count_lanes(std::uint32_t bits) noexcept
 {
     bits -= (bits >> 1U) & 0x5555U;

@@ -40,7 +40,7 @@ struct DigitRange
     std::uint32_t width{0};
 };
 
-/// Kinds of faces below a child.
+/// Kinds of faces below a node's child.
 struct FacesBelow
 {
     bool some_coarse{false};
@@ -57,16 +57,18 @@ template <typename Volume>
 struct alignas(64) BasicAbNode
 {
     static constexpr std::uint32_t kNoChild = 8;
-    static_assert(kNoChild >= kNodeChildren, "no child's index says that there is none");
+    static_assert(kNoChild >= kNodeChildren, "no child's index is the index of no child");
     static constexpr std::uint32_t kSeveral = 9; ///< Result of only_child_in(); never stored.
 
     typename Volume::Rows volumes{}; ///< Volumes of the children.
     std::array<TreeRef, kNodeChildren> children{};
-    std::uint64_t prefix{0}; ///< Path of any face that was below; its upper bits count.
+    /// Path of a face inserted below; only bits above the node's digit count.
+    std::uint64_t prefix{0};
     std::uint32_t digit_map{0x8888'8888U}; ///< Child of each digit value, 4 bits each; 8 is none.
     std::uint32_t parent{kNoNode};
-    std::uint32_t link{kNoNode}; ///< Link in a list: of free nodes, of marked ones, or of refit's
-                                 ///< level.
+    /// Next node in the list of marked ones, or of refit's level. Free nodes are linked by
+    /// `parent`.
+    std::uint32_t link{kNoNode};
     std::uint8_t shift{0};
     std::uint8_t mask{0};   ///< Children in use.
     std::uint8_t coarse{0}; ///< Children with an inexact face below.
@@ -74,14 +76,15 @@ struct alignas(64) BasicAbNode
     bool in_use{false};
     bool is_marked{false}; ///< True while in the list of marked nodes, even once freed.
     bool is_queued{false}; ///< True while in refit's list of its level.
-    std::uint8_t owner{0}; ///< Owner of its tree.
+    std::uint8_t owner{0}; ///< Model of the node's tree.
     std::uint8_t exact{0}; ///< Children with an exact face below.
 
     [[nodiscard]] std::uint32_t digit_of(std::uint64_t path) const noexcept
     {
         return static_cast<std::uint32_t>(path >> shift) & 7U;
     }
-    /// True if the path agrees with the node's above its digit.
+    /// True if the path agrees with `prefix` above the node's digit, so that its face belongs
+    /// below.
     [[nodiscard]] bool holds(std::uint64_t path) const noexcept
     {
         return (((path ^ prefix) >> shift) >> 3U) == 0;

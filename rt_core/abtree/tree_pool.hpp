@@ -23,7 +23,7 @@ struct TreeCapacities
     std::uint32_t nodes{0};
 };
 
-/// Share of a pool that one tree has.
+/// Reserved and used blocks and nodes of one tree in a pool.
 struct TreeShare
 {
     PoolShare blocks;
@@ -33,14 +33,15 @@ struct TreeShare
 template <typename Tree>
 class TreeValidator;
 
-/// A face of a tree.
+/// A face of a tree, or a free entry (`face` is none).
 struct TreePrim
 {
     static constexpr std::uint32_t kNoLeaf = 0xFFFF'FFFFU;
 
     FaceId face{};
     std::uint32_t bucket{0};
-    /// Block x 16 + lane; kNoLeaf; or, with the highest bit, the next unplaced prim of its tree.
+    /// Block x 16 + lane of a placed face; kNoLeaf of a free entry. With the highest bit set the
+    /// face is unplaced, and the other bits are the tree's next unplaced prim.
     std::uint32_t leaf{kNoLeaf};
 };
 
@@ -54,7 +55,7 @@ class BasicTreePool
 public:
     using Node = BasicAbNode<VolumePolicy>;
 
-    /// Number of blocks limited by a face's place, block x 16 + lane, which has 31 bits.
+    /// Largest number of blocks: a face's place, block x 16 + lane, has 31 bits.
     static constexpr std::uint32_t kMostBlocks = 0x8000'0000U / kBlockFaces;
 
     BasicTreePool(Arena& arena, const TreeCapacities& capacities) noexcept
@@ -89,7 +90,8 @@ public:
     {
         return {block_room_.promise(least.blocks), node_room_.promise(least.nodes)};
     }
-    /// See PoolRoom::try_promise() and end_promise().
+    /// Reserves blocks and nodes for a tree without a reservation. False, with nothing changed, if
+    /// too few are neither taken nor reserved.
     [[nodiscard]] bool try_promise(TreeShare& share, const TreeCapacities& least) noexcept
     {
         if (!block_room_.try_promise(share.blocks, least.blocks))
@@ -108,14 +110,14 @@ public:
         block_room_.end_promise(share.blocks);
         node_room_.end_promise(share.nodes);
     }
-    /// True if a tree may take `count` of each.
+    /// True if a tree may take `count` blocks and as many nodes.
     [[nodiscard]] bool has_room_for(const TreeShare& share, std::uint32_t count) const noexcept
     {
         return block_room_.left_for(share.blocks) >= count &&
                node_room_.left_for(share.nodes) >= count;
     }
 
-    /// An empty block; the tree must have one left.
+    /// Takes an empty block for a tree that has room for one (asserted).
     [[nodiscard]] std::uint32_t take_block(TreeShare& share, ModelId owner) noexcept
     {
         block_room_.take(share.blocks);
@@ -130,7 +132,7 @@ public:
         sides_[block].owner = static_cast<std::uint8_t>(owner.value);
         return block;
     }
-    /// A node without children; the tree must have one left.
+    /// Takes a node without children for a tree that has room for one (asserted).
     [[nodiscard]] std::uint32_t take_node(TreeShare& share, ModelId owner) noexcept
     {
         node_room_.take(share.nodes);
@@ -179,7 +181,7 @@ private:
     std::span<TreePrim> prims_;
     PoolRoom block_room_;
     PoolRoom node_room_;
-    std::uint32_t free_block_{kNoNode}; ///< Heads of the free lists.
+    std::uint32_t free_block_{kNoNode}; ///< First free block; free ones are linked by `parent`.
     std::uint32_t free_node_{kNoNode};
     std::uint64_t changes_{0};
 };

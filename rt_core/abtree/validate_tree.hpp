@@ -36,7 +36,7 @@ public:
         validator.check_free_nodes();
         validator.check_counts();
         validator.check_work_is_done();
-        // The next checks follow links, which the checks above bound.
+        // The next checks follow links, so they run only while no flaw was found.
         for (std::uint32_t i = 0; validator.is_sound() && i < tree.sides_.size(); ++i)
         {
             validator.check_block(i);
@@ -81,7 +81,7 @@ private:
         std::uint32_t listed = 0;
         for (std::uint32_t i = pool.free_block_; i != kNoNode; i = tree_.sides_[i].parent, ++listed)
         {
-            if (!block(i < tree_.sides_.size(), i, "is free and not there") ||
+            if (!block(i < tree_.sides_.size(), i, "is free and out of range") ||
                 !block(!tree_.sides_[i].in_use, i, "is in use and free") ||
                 !block(listed < free, i, "is in a free list that is too long"))
             {
@@ -91,9 +91,9 @@ private:
         const auto in_use = static_cast<std::uint32_t>(
             std::ranges::count_if(tree_.sides_, [](const BlockSide& side) { return side.in_use; }));
         finder_.expect(listed == free, "tree", listed,
-                       "blocks are in its pool's free list, and it counts others");
+                       "blocks are in its pool's free list, but the pool's count differs");
         finder_.expect(listed + in_use == pool.capacities().blocks, "tree", in_use,
-                       "blocks are in use, and some are neither that nor free");
+                       "blocks are in use, but others are neither in use nor free");
     }
 
     void check_free_nodes() noexcept
@@ -103,7 +103,7 @@ private:
         std::uint32_t listed = 0;
         for (std::uint32_t i = pool.free_node_; i != kNoNode; i = tree_.nodes_[i].parent, ++listed)
         {
-            if (!node(i < tree_.nodes_.size(), i, "is free and not there") ||
+            if (!node(i < tree_.nodes_.size(), i, "is free and out of range") ||
                 !node(!tree_.nodes_[i].in_use, i, "is in use and free") ||
                 !node(listed < free, i, "is in a free list that is too long"))
             {
@@ -113,9 +113,9 @@ private:
         const auto in_use = static_cast<std::uint32_t>(
             std::ranges::count_if(tree_.nodes_, [](const Node& each) { return each.in_use; }));
         finder_.expect(listed == free, "tree", listed,
-                       "nodes are in its pool's free list, and it counts others");
+                       "nodes are in its pool's free list, but the pool's count differs");
         finder_.expect(listed + in_use == pool.capacities().nodes, "tree", in_use,
-                       "nodes are in use, and some are neither that nor free");
+                       "nodes are in use, but others are neither in use nor free");
     }
 
     /// Counts blocks and nodes that name the tree as their owner.
@@ -126,9 +126,9 @@ private:
         const auto blocks = static_cast<std::uint32_t>(std::ranges::count_if(tree_.sides_, is_own));
         const auto nodes = static_cast<std::uint32_t>(std::ranges::count_if(tree_.nodes_, is_own));
         finder_.expect(blocks == tree_.blocks_used_ && blocks == tree_.share_.blocks.used, "tree",
-                       blocks, "blocks are its own, and it counts others");
+                       blocks, "blocks are its own, but its count differs");
         finder_.expect(nodes == tree_.nodes_used_ && nodes == tree_.share_.nodes.used, "tree",
-                       nodes, "nodes are its own, and it counts others");
+                       nodes, "nodes are its own, but its count differs");
     }
 
     void check_work_is_done() noexcept
@@ -181,7 +181,7 @@ private:
         }
         block(geometry.faces != 0, index, "is in use and empty");
         if (!block(is_linked(TreeRef::to_block(index), side.parent, side.child), index,
-                   "is not where its parent has it"))
+                   "is not linked from its parent"))
         {
             return;
         }
@@ -200,7 +200,7 @@ private:
             check_lane(index, lane);
             check_is_inside(box, index, lane);
         }
-        block(geometry.vertices == rows, index, "keeps other vertices than its faces use");
+        block(geometry.vertices == rows, index, "has vertices that differ from those of its faces");
         block(side.coarse == coarse, index, "has wrong coarse bits");
         if (side.parent != kNoNode)
         {
@@ -217,7 +217,7 @@ private:
         const std::uint32_t value = side.prims[lane].value;
         if (!block(value < tree_.prims_.size(), index, "holds a prim that does not exist") ||
             !prim(tree_.prims_[value].leaf == index * kBlockFaces + lane, value,
-                  "is in another lane than it says"))
+                  "names another lane"))
         {
             return;
         }
@@ -238,7 +238,8 @@ private:
         return side.coarse == 0 ? box : box.inflated(largest_error_quanta(side) * tree_.quantum_m_);
     }
 
-    /// Only for boxes with two corners; others are taken as refit makes them.
+    /// Checks that a block's box holds a face and its error; other volumes than Aabb are not
+    /// checked.
     void check_is_inside(const Box& box, std::uint32_t index, std::uint32_t lane) noexcept
     {
         if constexpr (std::same_as<Box, Aabb>)
@@ -270,12 +271,11 @@ private:
         }
         node(own.shift % 3 == 0 && own.shift / 3U < kTreeLevels, index, "has no octal digit");
         node(own.child_count() >= 2, index, "has fewer than two children");
-        node(((own.coarse | own.exact) & ~own.mask) == 0, index,
-             "has faces below a child that is not there");
+        node(((own.coarse | own.exact) & ~own.mask) == 0, index, "has faces below a missing child");
         check_children(index);
         check_digits(index);
         if (!node(is_linked(TreeRef::to_node(index), own.parent, own.child), index,
-                  "is not where its parent has it") ||
+                  "is not linked from its parent") ||
             own.parent == kNoNode)
         {
             return;
@@ -297,7 +297,8 @@ private:
         {
             const TreeRef ref = own.children[child];
             const bool is_used = ((std::uint32_t{own.mask} >> child) & 1U) != 0;
-            if (!node(is_used == !ref.is_none(), index, "has a mask that is not its children's") ||
+            if (!node(is_used == !ref.is_none(), index,
+                      "has a mask that differs from its children") ||
                 !is_used || !node(is_in_use(ref), index, "has a child that is not in use"))
             {
                 continue;
@@ -305,11 +306,12 @@ private:
             const std::uint32_t at = ref.index();
             node(ref.is_block() ? is_linked(ref, tree_.sides_[at].parent, tree_.sides_[at].child)
                                 : is_linked(ref, tree_.nodes_[at].parent, tree_.nodes_[at].child),
-                 index, "has a child that hangs elsewhere");
+                 index, "has a child that is linked elsewhere");
         }
     }
 
-    /// Each child has one aligned range of digits, a power of two wide; a node's is one digit.
+    /// Checks that each child has one aligned range of 1, 2 or 4 digits, and a child node one
+    /// digit.
     void check_digits(std::uint32_t index) noexcept
     {
         const Node& own = tree_.nodes_[index];
@@ -317,10 +319,10 @@ private:
         for (std::uint32_t digit = 0; digit < kNodeChildren; ++digit)
         {
             const std::uint32_t child = own.child_of(digit);
-            node(child <= Node::kNoChild, index, "has a digit that leads nowhere");
+            node(child <= Node::kNoChild, index, "has a digit without a child");
             reached |= child < kNodeChildren ? 1U << child : 0U;
         }
-        if (!node(reached == own.mask, index, "has digits of other children than its own"))
+        if (!node(reached == own.mask, index, "has digits that name other children"))
         {
             return;
         }
@@ -350,12 +352,12 @@ private:
         if ((own.leaf & Tree::kUnplaced) != 0 ||
             (at < tree_.sides_.size() && tree_.sides_[at].owner != tree_.owner_))
         {
-            return; // The face waits, or is another tree's.
+            return; // The face is unplaced, or of another tree.
         }
         prim(tree_.is_block_in_use(at) &&
                  ((std::uint32_t{tree_.blocks_[at].faces} >> lane) & 1U) != 0 &&
                  tree_.sides_[at].prims[lane].value == index,
-             index, "is not in the lane that it says");
+             index, "is not in the lane that it names");
     }
 
     void check_unplaced() noexcept
@@ -363,7 +365,7 @@ private:
         std::uint32_t listed = 0;
         for (std::uint32_t i = tree_.first_unplaced_; is_sound() && i != Tree::kLastUnplaced;)
         {
-            if (prim(i < tree_.prims_.size(), i, "is unplaced and not there") &&
+            if (prim(i < tree_.prims_.size(), i, "is unplaced and out of range") &&
                 prim(tree_.is_unplaced({i}), i, "is placed and in the list of the unplaced") &&
                 prim(++listed <= tree_.prims_.size(), i, "is twice in the list of the unplaced"))
             {

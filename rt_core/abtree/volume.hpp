@@ -51,7 +51,7 @@ struct AabbVolume
         return {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     }
 
-    /// Union of the children in `mask`.
+    /// Union of the boxes of the children in `mask`.
     [[nodiscard]] static Aabb of_children(const Kernels& kernels, const Rows& rows,
                                           std::uint32_t mask) noexcept
     {
@@ -60,15 +60,15 @@ struct AabbVolume
         return {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     }
 
-    /// Lower bounds on the distances from the probe, in quanta. Returns the children in `mask` not
-    /// farther than `bound`.
+    /// Writes to `gaps` lower bounds on the children's distances from the probe, in quanta. Returns
+    /// the children in `mask` whose bound is at most `bound`.
     static std::uint32_t child_gaps(const Kernels& kernels, const Rows& rows,
                                     const KernelProbe& probe, std::uint32_t mask, float bound,
                                     float* gaps) noexcept
     {
         return kernels.child_gaps(rows.low.front().data(), probe, mask, bound, gaps);
     }
-    /// Lower bounds on the distances from a box.
+    /// The same for distances from a box, in the box's units.
     static std::uint32_t child_gaps(const Kernels& kernels, const Rows& rows, const KernelBox& box,
                                     std::uint32_t mask, float bound, float* gaps) noexcept
     {

@@ -9,9 +9,8 @@
 namespace tactus
 {
 
-/// Handler of a failed assertion, called with the condition's text and place on the thread where it
-/// failed, which may be the haptic one. Must not return to the caller's bug silently: if it
-/// returns, the assertion traps.
+/// Handler of a failed assertion. It runs on the thread that failed, maybe the haptic one, and gets
+/// the condition's text and source place. If it returns, the assertion traps.
 using AssertHandler = void (*)(const char* condition, const char* file, int line) noexcept;
 
 /// Replaces the handler of the whole process and returns the previous one. Null is the default

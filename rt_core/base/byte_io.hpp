@@ -39,7 +39,7 @@ public:
         return value;
     }
 
-    /// The next `count` bytes themselves; empty and failed if there are fewer.
+    /// A view of the next `count` bytes; empty, with failed() latched, if fewer are left.
     [[nodiscard]] std::span<const std::byte> read_bytes(std::size_t count) noexcept
     {
         if (bytes_.size() - at_ < count)
@@ -69,7 +69,7 @@ private:
     bool failed_{false};
 };
 
-/// Reads fields of bits, lowest first, from a span that must hold them all.
+/// Reads bit fields, lowest bits first. A read past the end is a bug (asserted).
 class BitReader
 {
 public:

@@ -13,7 +13,7 @@ namespace tactus
 namespace detail
 {
 
-/// Table of a reflected polynomial.
+/// CRC-32 of each byte value with a reflected polynomial.
 constexpr std::array<std::uint32_t, 256> make_crc32_table(std::uint32_t polynomial) noexcept
 {
     std::array<std::uint32_t, 256> table{};

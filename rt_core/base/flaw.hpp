@@ -9,11 +9,11 @@
 namespace tactus
 {
 
-/// First finding of a validator: nothing, or a thing that breaks a promise.
+/// First broken invariant that a validator found; none if everything is sound.
 struct Flaw
 {
     const char* thing{nullptr}; ///< "block", "face" ...; null if everything is sound.
-    std::uint32_t index{0};     ///< Number of that thing.
+    std::uint32_t index{0};     ///< Number of the thing.
     const char* what{nullptr};  ///< Description of the flaw: "is in use and free".
 
     [[nodiscard]] constexpr bool is_none() const noexcept { return thing == nullptr; }
@@ -48,11 +48,12 @@ using FlawText = std::array<char, 128>;
     return text;
 }
 
-/// Keeps the first flaw of a walk.
+/// Keeps the first flaw of a validator's checks.
 class FlawFinder
 {
 public:
-    /// Checks a promise about one thing; false if it is broken, so that a walk may skip the rest.
+    /// Keeps a flaw of the thing with number `index` if `holds` is false and no earlier flaw is
+    /// kept. Returns `holds`.
     constexpr bool expect(bool holds, const char* thing, std::uint32_t index,
                           const char* what) noexcept
     {

@@ -36,7 +36,7 @@ public:
     {
         Words words{};
         std::memcpy(words.data(), &value, sizeof(T));
-        const std::uint64_t count = count_.load(std::memory_order_relaxed); // Only we write it.
+        const std::uint64_t count = count_.load(std::memory_order_relaxed); // No other writer.
         count_.store(count + 1, std::memory_order_relaxed); // The words' releases publish it.
         for (std::size_t i = 0; i < kWords; ++i)
         {

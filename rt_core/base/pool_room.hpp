@@ -10,7 +10,7 @@
 namespace tactus
 {
 
-/// Slots of a pool that one owner has.
+/// Reserved and taken slots of one owner in a pool.
 struct PoolShare
 {
     std::uint32_t promised{0}; ///< Slots reserved for this owner.
@@ -64,7 +64,7 @@ public:
         TACTUS_ASSERT(left_for(share) > 0);
         take_unasked(share);
     }
-    /// Takes a slot that can't be refused: fewer than none may be left afterwards.
+    /// Takes a slot that can't be refused. The free slots may then be fewer than those promised.
     void take_unasked(PoolShare& share) noexcept
     {
         kept_ -= share.used < share.promised ? 1 : 0;
@@ -88,7 +88,7 @@ public:
 private:
     std::uint32_t capacity_;
     std::int64_t free_;
-    std::int64_t kept_{0}; ///< Free slots that are promised and not taken.
+    std::int64_t kept_{0}; ///< Number of promised slots that are not taken.
 };
 
 } // namespace tactus

@@ -24,7 +24,7 @@
 #define TACTUS_TRUSTED_END _Pragma("clang diagnostic pop")
 #endif
 #endif
-#ifndef TACTUS_NONBLOCKING // Nothing where it isn't known.
+#ifndef TACTUS_NONBLOCKING // Empty for other compilers.
 #define TACTUS_NONBLOCKING
 #define TACTUS_TRUSTED_BEGIN
 #define TACTUS_TRUSTED_END

@@ -7,7 +7,7 @@
 namespace tactus
 {
 
-/// Sorts a short list; `before` is a strict total order. std::sort is recursive.
+/// Sorts a short list by `before`, a strict total order, without the recursion of std::sort.
 template <typename List, typename Before>
 void sort_without_recursion(List& list, const Before& before) noexcept
 {

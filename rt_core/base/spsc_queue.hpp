@@ -37,7 +37,7 @@ public:
     /// Producer thread. False, with nothing changed, if the queue is full.
     [[nodiscard]] bool try_push(const T& value) noexcept
     {
-        const std::uint64_t tail = tail_.load(std::memory_order_relaxed); // Only we write it.
+        const std::uint64_t tail = tail_.load(std::memory_order_relaxed); // No other writer.
         // Pairs with the release in try_pop(): the slot's old content has been read.
         if (tail - head_.load(std::memory_order_acquire) == slots_.size())
         {
@@ -51,7 +51,7 @@ public:
     /// Consumer thread. False, with `value` unchanged, if the queue is empty.
     [[nodiscard]] bool try_pop(T& value) noexcept
     {
-        const std::uint64_t head = head_.load(std::memory_order_relaxed); // Only we write it.
+        const std::uint64_t head = head_.load(std::memory_order_relaxed); // No other writer.
         // Pairs with the release in try_push(): the slot's content has been written.
         if (head == tail_.load(std::memory_order_acquire))
         {

@@ -14,9 +14,9 @@
 namespace tactus
 {
 
-/// At most `Capacity` values in place, for short lists on the stack or inside records. Construction
-/// costs nothing: unused capacity is not initialised. An index beyond the size and pop_back() of an
-/// empty list are bugs (asserted).
+/// List of at most `Capacity` values in place, for the stack or inside records. Construction costs
+/// nothing: unused capacity is not initialised. An index beyond the size and pop_back() of an empty
+/// list are bugs (asserted).
 template <typename T, std::size_t Capacity>
 class StaticVector // NOLINT(cppcoreguidelines-special-member-functions): moving is copying.
 {

@@ -34,8 +34,8 @@ void CachePool::set_period(std::int64_t period_ns) noexcept
 void CachePool::adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
                                WorkCounters& work) noexcept
 {
-    // Checked once a frame: the other side makes room at any time, and the number of requests must
-    // not depend on that time.
+    // Read once a frame: the transport thread makes room at any time, and the number of requests
+    // must not depend on that time.
     request_room_ = static_cast<std::uint32_t>(queues.wanted.capacity() - queues.wanted.size());
     request_room_at_start_ = request_room_;
     refused_class_ = kPriorityClasses;

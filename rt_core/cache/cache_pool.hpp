@@ -32,26 +32,25 @@ public:
     CachePool(Arena& arena, std::uint32_t page_slots, std::uint32_t index_slots,
               std::uint32_t models, std::uint32_t streamed_models = 0) noexcept;
 
-    /// Sets the duration of a frame; 1 ms without a call. Requests wait kRequestTimeout_ns for
-    /// answers.
+    /// Sets the duration of a frame, 1 ms without a call: requests expire after kRequestTimeout_ns.
     void set_period(std::int64_t period_ns) noexcept;
 
-    /// Begins a frame: the caches adopt their arrivals in order, up to the first slot beyond
-    /// `budget` and kMaxArrivalsPerFrame, or the first link update beyond kMaxLinkUpdatesPerFrame.
-    /// Requests without an answer for too long expire.
+    /// Begins a frame: passes queued events to their models' caches, in order. Stops before the
+    /// first arrival beyond `budget` or kMaxArrivalsPerFrame, or the first link update beyond
+    /// kMaxLinkUpdatesPerFrame. Then requests without an answer for too long expire.
     void adopt_arrivals(std::uint32_t budget, std::uint32_t frame,
                         WorkCounters& work) noexcept TACTUS_NONBLOCKING;
-    /// Begins a frame that has taken nothing yet.
+    /// Empties taken(), for a frame without adopt_arrivals().
     void forget_taken() noexcept { taken_count_ = 0; }
-    /// Events that the last frame took. With the frame's arguments they decide all that the frame
-    /// does. Valid until the next adoption.
+    /// Events taken in this frame, and the room for requests at its start: with the frame's
+    /// arguments all of its inputs. Valid until the next adopt_arrivals().
     [[nodiscard]] QueueTake taken() const noexcept
     {
         return {taken_.first(taken_count_), request_room_at_start_};
     }
 
-    /// Highest-priority class for which a chunk at a tool found no page in this frame;
-    /// kPriorityClasses: none.
+    /// Highest-priority class of which a chunk at a tool found no page slot in this frame;
+    /// kPriorityClasses if there is none.
     [[nodiscard]] std::uint32_t refused_class() const noexcept { return refused_class_; }
 
     /// State of a slot for index pages.
@@ -73,8 +72,8 @@ private:
     friend class ChunkCache;
     friend class CacheValidator;
 
-    /// Pages checked for one eviction, from where the last check ended; the oldest of them is
-    /// evicted.
+    /// Largest number of pages checked for one eviction, beginning after the last one checked. The
+    /// least recently touched is evicted.
     static constexpr std::uint32_t kEvictionLooks = 128;
 
     [[nodiscard]] bool try_request(ContentKey key, std::uint32_t owner,
@@ -85,18 +84,18 @@ private:
         refused_class_ = std::min(refused_class_, static_cast<std::uint32_t>(of));
     }
 
-    /// Caches by owner, while alive: one cache may take an unused page of another.
+    /// Cache of each model, by owner: one model's request may evict another's unused page.
     std::span<ChunkCache*> caches_;
     std::span<QueueEvent> taken_; ///< Events of this frame are the first `taken_count_`.
     std::uint32_t taken_count_{0};
-    QueueEvent next_;      ///< Event for which the last frame had no room.
+    QueueEvent next_;      ///< Popped event beyond the last frame's limits.
     bool has_next_{false}; ///< `next_` is valid.
     std::uint32_t request_room_at_start_{0};
     std::uint32_t request_room_{0};
     std::uint32_t request_timeout_frames_{kRequestTimeoutFrames};
     std::uint32_t refused_class_{kPriorityClasses};
     std::uint32_t hand_{0};         ///< Next page to check for eviction.
-    std::uint32_t barren_looks_{0}; ///< Checks since the last eviction.
+    std::uint32_t barren_looks_{0}; ///< Pages checked since the last eviction.
 };
 
 } // namespace tactus

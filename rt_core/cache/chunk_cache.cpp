@@ -33,7 +33,7 @@ QuantumBox extent_of(const ModelHeader& header) noexcept
     return extent;
 }
 
-/// Boxes that a wider sphere meets, of the eight from `first` on and of those in `open`.
+/// Boxes of `open` that a wider sphere meets; bit i is the box `first` + i of the index page.
 std::uint32_t met_of(std::uint32_t open, std::span<const WantedSphere> spheres, double wider,
                      const IndexPage& index, const QuantumBox& page_box,
                      std::uint32_t first) noexcept
@@ -194,7 +194,7 @@ void ChunkCache::adopt(const QueueEvent& arrival, std::uint32_t frame) noexcept
     TACTUS_ASSERT(inserted);
     ++index_pages_used_;
     index_requests_.arrive(arrival.key.number, frame);
-    forget(IndexPageId{arrival.key.number}); // The page has not been searched yet.
+    forget(IndexPageId{arrival.key.number}); // The new page has not been searched yet.
 }
 
 void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
@@ -226,7 +226,8 @@ void ChunkCache::request_missing(std::span<const RankedRegion> regions, const Bu
     search(patient_, budgets, work, faults);
 }
 
-/// The spheres near the model in the order of their levels.
+/// The regions' spheres near the model in quanta, sorted by level: those of touching and soon pairs
+/// if `are_urgent`, otherwise the rest.
 IndexSearch::Spheres ChunkCache::to_quanta(std::span<const RankedRegion> regions,
                                            bool are_urgent) const noexcept
 {
@@ -254,7 +255,7 @@ IndexSearch::Spheres ChunkCache::to_quanta(std::span<const RankedRegion> regions
     return spheres;
 }
 
-/// Searches due groups, then pages of the round, until the frame has done `most`.
+/// Searches due groups, then pages of the round, until most.regions or the work budget is spent.
 void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& work,
                         FrameFault& faults) noexcept
 {
@@ -289,7 +290,7 @@ void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& 
         }
         look(*near);
     }
-    // The upper level is cheap: sixteen entries count as much as one page.
+    // Entries of the header are cheap: sixteen count as much as one index page.
     const std::uint32_t entries = 16 / kGroups * groups;
     for (std::uint32_t entry = 0; entry < entries && may_look() && search.is_on_round(); ++entry)
     {
@@ -316,7 +317,7 @@ void ChunkCache::request_everything(const Budgets& budgets, WorkCounters& work,
         const IndexPageId page{chunk.value >> kChunksPerIndexPageLog2};
         if (find_index_page(page) == IdTable::kAbsent)
         {
-            // The page that verifies the chunk comes first.
+            // The index page with the chunk's hash comes first.
             static_cast<void>(try_want_index_page(page, work, faults));
             return;
         }
@@ -341,7 +342,7 @@ std::uint32_t ChunkCache::unused_since() const noexcept
 }
 
 /// Searches the due groups of a page: requests chunks that a sphere meets, and finds how far the
-/// spheres may move before the groups are due again. Returns the number of groups.
+/// spheres may move before the groups are due again. Returns the number of searched groups.
 std::uint32_t ChunkCache::look_at(IndexSearch::NearPage& near, const Look& look, WorkCounters& work,
                                   FrameFault& faults) noexcept
 {
@@ -419,7 +420,7 @@ void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& ind
             float& gap = gaps[i / 8];
             if (const auto way = look.search.gap_to(box_of(index, page_box, i), 1.0))
             {
-                gap = std::min(gap, static_cast<float>(*way)); // Only wider spheres meet these.
+                gap = std::min(gap, static_cast<float>(*way)); // Only a wider sphere meets the box.
             }
             else if (!try_want(chunk, want, look.most, work, faults))
             {
@@ -455,7 +456,7 @@ bool ChunkCache::try_touch(ChunkId chunk, const Want& want, WorkCounters& work) 
     return chunk_requests_.is_under_way(chunk.value);
 }
 
-/// Requests a chunk that is neither.
+/// Requests a chunk that is neither resident nor under way; false if the request can't be sent.
 bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, WorkCounters& work,
                           FrameFault& faults) noexcept
 {
@@ -484,7 +485,7 @@ bool ChunkCache::try_want(ChunkId chunk, const Want& want, const Budgets& most, 
     return true;
 }
 
-/// Requests an index page; true if it is under way.
+/// Requests an index page unless it is under way; false if the request can't be sent.
 bool ChunkCache::try_want_index_page(IndexPageId page, WorkCounters& work,
                                      FrameFault& faults) noexcept
 {
@@ -504,8 +505,9 @@ bool ChunkCache::try_want_index_page(IndexPageId page, WorkCounters& work,
     return true;
 }
 
-/// Evicts the least recently touched of some pages that are not pinned and were unused for long
-/// enough, of this model or of another that has more than its reservation.
+/// Evicts one page to free a slot: the least recently touched of the next kEvictionLooks that has
+/// no refined record and was unused long enough. It may be another model's with more than its
+/// reservation.
 void ChunkCache::give_page_back(const Want& want, WorkCounters& work) noexcept
 {
     const std::uint32_t slots = pages_->capacity();
@@ -536,9 +538,9 @@ void ChunkCache::give_page_back(const Want& want, WorkCounters& work) noexcept
     pool_->caches_[pages_->meta(oldest).owner]->evict(oldest, work);
 }
 
-/// Last touch before which other models may take a page of a kind: none of the pages reserved for
-/// the model, and none used in the last two rounds or in `age` frames before. A model without
-/// requests has no rounds.
+/// Frame before which a piece's last touch lets other models take its slot; 0, which means none,
+/// within this model's reservation. A piece used in the last two rounds, or `age` frames before
+/// them, stays. A model without requests in this frame has no rounds.
 std::uint32_t ChunkCache::lends_before(const RequestList& requests, std::uint32_t frame,
                                        std::uint32_t age) const noexcept
 {
@@ -546,14 +548,14 @@ std::uint32_t ChunkCache::lends_before(const RequestList& requests, std::uint32_
     return requests.has_more_than_its_own() ? (is_idle ? frame : lends_before_) - age : 0;
 }
 
-/// Begins new rounds; unused pages may be evicted after two rounds of both searches.
+/// Begins new rounds of both searches in the next frame.
 void ChunkCache::begin_again() noexcept
 {
     urgent_.begin_again();
     patient_.begin_again();
 }
 
-/// Drops certificates of a page that was loaded or evicted.
+/// Drops certificates that depend on a loaded or evicted index page.
 void ChunkCache::forget(IndexPageId page) noexcept
 {
     urgent_.forget(page);

@@ -21,18 +21,19 @@ namespace tactus
 
 /// Resident chunks and index pages of a model, and requests for missing ones.
 ///
-/// Every frame searches for chunks whose influence box meets a ranked sphere, where the
-/// certificates of its searches (IndexSearch) are used up: first for pairs that touch or will soon,
-/// then for the rest, each with a part of the budget that the other can't take. Such a chunk is
-/// touched if resident and otherwise requested. A page may be evicted if its slot is needed, no
-/// record of it is refined, and it was not touched in the last two rounds; the least recently
-/// touched goes first. Within a class a chunk that is needed counts as touched kLevelAge frames
-/// later than one that is predicted, and that one as much later than a chunk of the next class.
-/// Prefetching therefore never evicts pages in use, while present needs may replace prefetched
-/// pages, and touching pairs those of other pairs.
+/// Every frame searches for chunks whose influence box meets a ranked sphere: first for pairs that
+/// touch or will soon, then for the others, for which a quarter of the budgets is kept. Boxes with
+/// a valid certificate (IndexSearch) are skipped. A found chunk is touched if resident, otherwise
+/// requested.
 ///
-/// All models share one pool of slots. If it has no more for this model, the evicted page may be
-/// another model's that has more than its reservation.
+/// If a slot is needed, the least recently touched page is evicted that has no refined record and
+/// was not touched in the last two rounds. A predicted chunk counts as touched kLevelAge frames
+/// earlier than a needed one of its class, and the next class as much earlier again. So prefetching
+/// never evicts pages in use. Present needs may replace prefetched pages, and needs of touching
+/// pairs those of others.
+///
+/// All models share one pool of slots. If the pool has no more for this model, the evicted page may
+/// be of another model with more slots than its reservation.
 ///
 /// Haptic thread; the other end of the queues is the chunk loader's.
 class ChunkCache
@@ -45,8 +46,8 @@ public:
         std::uint32_t index_pages{0};
     };
 
-    /// `pages` is the model's table, `pool` that of its slots; both outlive the cache, which does
-    /// not move.
+    /// `pages` is the model's page table; it and `pool` must outlive the cache, which must not
+    /// move.
     ChunkCache(CachePool& pool, const Kept& kept, const ModelHeader& header, PageSlots slots,
                PageTable& pages, const Kernels& kernels) noexcept;
     ChunkCache(const ChunkCache&) = delete;
@@ -55,10 +56,11 @@ public:
     ChunkCache& operator=(ChunkCache&&) = delete;
     ~ChunkCache() = default;
 
-    /// Sets the shortcuts of requests; without a call all are on.
+    /// Sets which shortcuts are used (FrameVariant); without a call all are.
     void set_variant(const FrameVariant& variant) noexcept { variant_ = variant; }
 
-    /// Requests what `regions` (of this model, highest priority first) lack.
+    /// Touches the chunks that the spheres `regions` need and requests missing ones, with their
+    /// index pages. The regions are of this model, highest priority first.
     void request_missing(std::span<const RankedRegion> regions, const Budgets& budgets,
                          std::uint32_t frame, WorkCounters& work,
                          FrameFault& faults) noexcept TACTUS_NONBLOCKING;
@@ -71,16 +73,14 @@ public:
     void request_everything(const Budgets& budgets, WorkCounters& work,
                             FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Closes the cache of a streamed model: arrivals are returned at once. Such a cache starts
-    /// closed.
+    /// Closes a streamed model's cache: pieces that arrive are returned at once.
     void close() noexcept { is_open_ = false; }
     void open() noexcept TACTUS_NONBLOCKING;
-    /// Requests the base mesh of a closed cache into cells from `first_cell` on, again if it does
-    /// not arrive. The cells are the transport thread's until then.
+    /// Requests the base mesh of a closed cache into the cells from `first_cell` on, and repeats an
+    /// expired request. The transport thread owns the cells until an answer arrives.
     void want_base(std::uint32_t first_cell, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool has_base() const noexcept { return has_base_; }
-    /// True if the cells were returned without a mesh since the last call. The mesh may be
-    /// requested again a while later.
+    /// True if the transport thread returned the cells without a base mesh since the last call.
     [[nodiscard]] bool try_take_cells_back() noexcept
     {
         return std::exchange(has_cells_back_, false);
@@ -89,13 +89,13 @@ public:
     {
         return cells_back_ == 0 || frame - cells_back_ > pool_->request_timeout_frames_;
     }
-    /// Returns all that a closed cache has, up to `most` slots per call, continuing where the last
-    /// call ended: the pages, with no refined records, then the index pages, then the base mesh.
-    /// False until all is returned.
+    /// Returns a closed cache's slots to the transport thread: pages, whose refined bits it clears,
+    /// then index pages, then the base mesh. Checks `most` slots per call, continuing where the
+    /// last call ended. True once all are returned.
     [[nodiscard]] bool try_empty(std::uint32_t most, std::uint32_t frame,
                                  WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
-    /// First frame number, so that ages can be subtracted.
+    /// Number of the first frame, larger than any age that is subtracted from a frame number.
     static constexpr std::uint32_t kFirstFrame = 4'096;
 
     /// Frames from the request of a chunk to its arrival.
@@ -114,15 +114,16 @@ private:
     friend class CachePool;
 
     using IndexMeta = CachePool::IndexMeta;
-    /// Need for a chunk: its effective last use, and the pages that it may replace.
+    /// Priority of a needed chunk, as frame numbers.
     struct Want
     {
         std::uint32_t touch{0};
         std::uint32_t evict_before{0};
-        std::uint32_t age{0}; ///< Additional time for which another model's page must be unused.
+        /// Frames added to the time that another model's page must be unused.
+        std::uint32_t age{0};
         std::uint32_t level{0};
     };
-    /// Objects of a frame's search.
+    /// A search of this frame, its spheres and its budgets.
     struct Look
     {
         IndexSearch& search;
@@ -151,7 +152,7 @@ private:
                                            FrameFault& faults) noexcept;
     void forget(IndexPageId page) noexcept;
     void begin_again() noexcept;
-    /// Pages not touched since were unused for two rounds.
+    /// Frame before which a page's last touch means that it was unused for two rounds.
     [[nodiscard]] std::uint32_t unused_since() const noexcept;
     void give_page_back(const Want& want, WorkCounters& work) noexcept;
     [[nodiscard]] std::uint32_t find_index_page(IndexPageId page) const noexcept TACTUS_NONBLOCKING;
@@ -161,12 +162,12 @@ private:
     void evict(std::uint32_t slot, WorkCounters& work) noexcept;
     [[nodiscard]] bool try_evict_index_page() noexcept;
 
-    /// Longer than two rounds and a load take, but no longer: while a tool moves on, pages that it
-    /// left occupy room that it will need.
+    /// Frames by which a touch is dated back per level: just longer than two rounds and a load
+    /// take. Pages that a tool has left would otherwise keep slots that it needs ahead.
     static constexpr std::uint32_t kLevelAge = 64;
     static_assert(kLevelAge * kWantedLevels < kFirstFrame,
                   "a touch dated back is no frame before the first");
-    /// Share of the budgets that spheres of lower priority always get.
+    /// Divisor of the budgets: a quarter is kept for spheres of lower priority.
     static constexpr std::uint32_t kPatientShare = 4;
 
     CachePool* pool_;
@@ -178,18 +179,19 @@ private:
     PageSlots slots_;
     PageTable* pages_;
     const Kernels* kernels_;
-    std::span<IndexMeta> index_meta_; ///< Slots of all models.
+    std::span<IndexMeta> index_meta_; ///< State of all models' slots.
     std::uint32_t index_pages_used_{0};
     RequestList chunk_requests_;
     RequestList index_requests_;
-    /// Others may take pages not touched since, beyond the reservation.
+    /// Frame before which a page's last touch lets other models take it, beyond this model's
+    /// reservation.
     std::uint32_t lends_before_{kFirstFrame};
     std::uint32_t fill_cursor_{0}; ///< Next chunk of request_everything().
     bool is_open_{true};
     bool has_base_{false};          ///< The base mesh of a streamed model is resident.
     bool has_cells_back_{false};    ///< Cells were returned, not yet reported.
-    std::uint32_t base_asked_{0};   ///< Frame of the request; 0: none.
-    std::uint32_t cells_back_{0};   ///< Frame of the last return; 0: none.
+    std::uint32_t base_asked_{0};   ///< Frame of the base mesh's request; 0: none.
+    std::uint32_t cells_back_{0};   ///< Frame of the cells' last return; 0: none.
     std::uint32_t empty_cursor_{0}; ///< Next slot of try_empty().
     std::uint32_t frame_{kFirstFrame};
     std::uint64_t loads_{0};

@@ -62,7 +62,8 @@ SphereLanes::SphereLanes(std::span<const WantedSphere> spheres, double wider) no
 
 KernelPage SphereLanes::page(const QuantumBox& box) const noexcept
 {
-    // A step has less than 18 bits. The gap is off by less than 8 x 2^-24 of the sum of all sizes.
+    // Rounding of a gap, as a share of the sum of all sizes: less than 8 x 2^-24, as steps of less
+    // than 18 bits are exact.
     constexpr double kSlack = 0x1p-20;
     // Squares of larger sizes may overflow: single precision then decides nothing.
     constexpr double kLargest = 1e18;
@@ -89,7 +90,7 @@ void IndexSearch::aim(const Spheres& spheres, std::uint32_t pages, std::uint32_t
     wider_ = keeps_rounds ? kWider : 1.0;
     if (spheres.empty())
     {
-        // Nothing touched before is in use any more.
+        // No page touched before is in use any more.
         is_kept_ = false;
         has_due_ = false;
         near_.clear();
@@ -113,7 +114,8 @@ void IndexSearch::aim(const Spheres& spheres, std::uint32_t pages, std::uint32_t
     find_due();
 }
 
-/// Motion of the farthest sphere since the last frame; none if the spheres or their levels changed.
+/// Largest motion of a sphere since the last frame; none if the number of spheres of a level
+/// changed.
 std::optional<double> IndexSearch::way_of(const Spheres& spheres) const noexcept
 {
     if (spheres.size() != kept_.size())

@@ -17,8 +17,8 @@
 namespace tactus
 {
 
-/// Level of a region, 0 being the highest priority: two for each PriorityClass, at a tool and
-/// predicted.
+/// Level of a region; 0 is the highest priority. Each PriorityClass has two, the first for regions
+/// at a tool, the second for predicted ones.
 [[nodiscard]] constexpr std::uint32_t level_of(PriorityClass of, bool is_present) noexcept
 {
     return 2 * static_cast<std::uint32_t>(of) + (is_present ? 0 : 1);
@@ -40,24 +40,24 @@ struct WantedSphere
     std::uint32_t level{0};
 };
 
-/// Spheres as the kernels use them, around the first one's centre.
+/// Spheres in single precision for the kernels, with centres relative to the first sphere's.
 class SphereLanes
 {
 public:
-    /// Multiplies each sphere's radius by `wider`.
+    /// Multiplies each radius by `wider`. `spheres` must not be empty.
     SphereLanes(std::span<const WantedSphere> spheres, double wider) noexcept;
 
     [[nodiscard]] const KernelSphere* from(std::size_t sphere) const noexcept
     {
         return &lanes_[sphere];
     }
-    /// Kernel page of an index page with this box, around the same point.
+    /// The box of an index page for the kernels, relative to the same point.
     [[nodiscard]] KernelPage page(const QuantumBox& box) const noexcept;
 
 private:
     StaticVector<KernelSphere, kMaxRankedRegions> lanes_;
     std::array<double, 3> around_{};
-    double size_{0.0}; ///< Share of the spheres in a page's slack.
+    double size_{0.0}; ///< Part of a page's slack due to the spheres' size.
 };
 
 /// Finds the boxes of a model's index that must be searched so that no chunk that a sphere meets is
@@ -70,8 +70,8 @@ private:
 /// moved farther than the round's margin. A new round begins then, and also kRestFrames after the
 /// last one's end, so that all pages in use are touched again.
 ///
-/// A sphere of a higher-priority level that reaches a box counts, too, and if a sphere's priority
-/// rises, all groups are due. Haptic thread.
+/// A certificate also ends where a sphere of a higher-priority level reaches a box. If a sphere's
+/// priority rises, all groups are due. Haptic thread.
 class IndexSearch
 {
 public:
@@ -84,15 +84,16 @@ public:
     {
         IndexPageId page;
         std::uint32_t due{0}; ///< Groups to search in this frame, one bit each.
-        /// A wider sphere meets the page's box; until then the certificates are that box's.
+        /// True if a wider sphere meets the page's box and the index page is resident. Otherwise
+        /// `until` holds for the box of the whole page.
         bool is_met{false};
         std::array<float, kGroups> until{}; ///< Motion up to which each group's certificate holds.
     };
-    /// Value for a group due in the next frame; below, for one without a box that matters.
+    /// Values of NearPage::until: due in the next frame, and never due, as no box matters.
     static constexpr float kNow = -1.0F;
     static constexpr float kNever = 0x1p120F;
 
-    /// `frame` is the one before the first.
+    /// `frame` is the number before the first frame's.
     explicit IndexSearch(std::uint32_t frame) noexcept
         : round_began_(frame), last_round_began_(frame)
     {
@@ -104,12 +105,12 @@ public:
     void aim(const Spheres& spheres, std::uint32_t pages, std::uint32_t frame,
              bool keeps_rounds) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::span<const WantedSphere> spheres() const noexcept { return spheres_; }
-    /// Factor of the wider spheres. Chunks that a wider sphere meets are in use, with its priority;
-    /// only chunks that the sphere itself meets are requested. So chunks that a sphere has just
-    /// left stay, and those that it reaches next have its priority.
+    /// Factor on the radius of the wider spheres. Resident chunks that a wider sphere meets are
+    /// touched; missing ones are requested only if the sphere itself meets them. So chunks that a
+    /// sphere has just left stay.
     [[nodiscard]] double wider() const noexcept { return wider_; }
-    /// Level of highest priority of a sphere in this round, with which it touches pages: a pair
-    /// that touches now and then counts as touching.
+    /// Highest-priority level that the sphere had in this round; its chunks are touched with it. So
+    /// a pair in intermittent contact counts as touching.
     [[nodiscard]] std::uint32_t touch_level(std::size_t sphere) const noexcept
     {
         return is_kept_ ? kept_[sphere].level : spheres_[sphere].level;
@@ -122,17 +123,18 @@ public:
 
     /// True if the round has not ended.
     [[nodiscard]] bool is_on_round() const noexcept { return pages_left_ > 0; }
-    /// The round's next page, during a round.
+    /// The round's next page; is_on_round() must hold (asserted).
     [[nodiscard]] IndexPageId next(std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
     /// True if a wider sphere may meet the box before the next round.
     [[nodiscard]] bool may_come_to(const QuantumBox& box) const noexcept TACTUS_NONBLOCKING;
     /// Lists a page, all groups of which are due. With a full list every frame begins a round.
     [[nodiscard]] NearPage& add(IndexPageId page) noexcept TACTUS_NONBLOCKING;
 
-    /// Motion before a sphere, widened by this factor, can meet the box; none if one does.
+    /// Least motion, in quanta, with which a sphere widened by this factor can meet the box; none
+    /// if one already meets it.
     [[nodiscard]] std::optional<double> gap_to(const QuantumBox& box,
                                                double wider) const noexcept TACTUS_NONBLOCKING;
-    /// End of a certificate that holds for a motion of `gap` from now on.
+    /// Value for NearPage::until of a certificate that holds for a further motion of `gap`.
     [[nodiscard]] float until(double gap) const noexcept
     {
         // Reduced by more than all roundings of motions.
@@ -146,21 +148,21 @@ public:
     /// Begins a round in the next frame.
     void begin_again() noexcept { is_kept_ = false; }
 
-    /// Pages that were in use at least once in two rounds were touched in this frame or later.
+    /// Frame before which a page's last touch means that it was unused for two rounds.
     [[nodiscard]] std::uint32_t last_round_began() const noexcept { return last_round_began_; }
 
-    /// Frames between two rounds: pages in use are touched nearly as often as without the pause.
+    /// Frames from the end of a round to the next one's begin.
     static constexpr std::uint32_t kRestFrames = 16;
     /// Bounds of a round's margin as shares of the smallest sphere's radius; within them it is the
     /// motion of the spheres in kRestFrames at the frame's speed.
     static constexpr double kLeastMargin = 0.1;
     static constexpr double kMostMargin = 1.0;
-    /// Factor of the wider spheres.
+    /// Factor on the radius of the wider spheres.
     static constexpr double kWider = 1.1;
-    /// Spheres for which a round is kept: twelve moving tools with spheres. With more every frame
-    /// begins one.
+    /// Largest number of spheres for which a round and its list last longer than a frame: twelve
+    /// moving spherical tools. With more, every frame begins a round.
     static constexpr std::size_t kKeptSpheres = 64;
-    /// Capacity of the list.
+    /// Capacity of the list of near pages.
     static constexpr std::size_t kMaxNear = 32;
 
 private:
@@ -176,20 +178,20 @@ private:
     NearPage unlisted_;
     QuantumBox region_; ///< Region that no sphere leaves during the round.
     std::span<const WantedSphere> spheres_;
-    bool is_kept_{false}; ///< The list and its certificates belong to kept_.
+    bool is_kept_{false}; ///< The list and its certificates are valid for the spheres in kept_.
     bool has_due_{false};
     double wider_{1.0};
     double margin_{0.0};
     /// Bound on motion and growth of the spheres since the round began.
     double way_{0.0};
     std::size_t turn_{0};       ///< Next place of the list to check.
-    std::size_t turns_left_{0}; ///< Places left in this frame.
-    std::uint32_t cursor_{0};   ///< Next page to check.
+    std::size_t turns_left_{0}; ///< Places left to check in this frame.
+    std::uint32_t cursor_{0};   ///< Next page of the round.
     std::uint32_t pages_{0};
     std::uint32_t pages_left_{0};    ///< Pages left of the round.
-    std::uint32_t ended_{0};         ///< Frame of its last page.
+    std::uint32_t ended_{0};         ///< Frame of the round's last page.
     std::uint32_t round_began_;      ///< Frame in which the cursor last passed zero.
-    std::uint32_t last_round_began_; ///< Frame of the pass before.
+    std::uint32_t last_round_began_; ///< Frame in which the cursor passed zero before that.
 };
 
 } // namespace tactus

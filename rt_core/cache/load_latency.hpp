@@ -28,7 +28,7 @@ public:
     }
 
     [[nodiscard]] double mean_frames() const noexcept { return mean_; }
-    /// Bound that nearly all pieces keep.
+    /// Number of frames within which nearly all pieces arrive.
     [[nodiscard]] double most_frames() const noexcept { return mean_ + 2.0 * deviation_; }
     /// True once a piece has arrived; before that the values are those of a local network at 1 kHz.
     [[nodiscard]] bool is_measured() const noexcept { return is_measured_; }

@@ -24,17 +24,17 @@ class RequestList;
 class RequestPool
 {
 public:
-    /// The transport thread has all slots at start.
+    /// All slots start as the transport thread's.
     RequestPool(Arena& arena, std::uint32_t slots) noexcept
         : room_(slots), place_of_(arena, slots), requests_(arena.take<Request>(slots))
     {
     }
 
-    /// Expires requests without an answer for too long, so that they may be repeated. Checks enough
-    /// requests per call to check each once in `timeout` calls. `timeout` > 0, in frames.
+    /// Removes requests older than `timeout` frames, so that they may be repeated; `timeout` > 0.
+    /// Each request is checked once in `timeout` calls.
     void expire(std::uint32_t frame, std::uint32_t timeout = kRequestTimeoutFrames) noexcept;
 
-    /// Requests of all models.
+    /// Number of requests of all models.
     [[nodiscard]] std::uint32_t under_way() const noexcept { return place_of_.size(); }
 
 private:
@@ -57,8 +57,8 @@ private:
     std::uint32_t cursor_{0};
 };
 
-/// One model's part of the pool: its pieces under way, and the number of its slots, including those
-/// that requests wait for, within what other models leave. Does not move.
+/// One model's requests in a pool, and the number of its slots: those that hold a piece and those
+/// reserved for a requested one. Must not move.
 class RequestList
 {
 public:
@@ -93,7 +93,7 @@ public:
         TACTUS_ASSERT(inserted);
         ++under_way_;
     }
-    /// Records a piece that arrived, in a slot that is no longer the transport thread's.
+    /// Records the arrival of a piece: ends its request and counts its slot as the model's.
     void arrive(std::uint32_t number, std::uint32_t frame) noexcept
     {
         const std::uint32_t place = pool_->place_of_.find(first_key_ + number);

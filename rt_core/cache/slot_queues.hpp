@@ -14,13 +14,13 @@
 namespace tactus
 {
 
-/// A slot that the haptic thread returns. A model's base mesh is returned after all its pages;
-/// cells returned without a mesh are confirmed the same way.
+/// A slot that the haptic thread returns, or a base mesh, after all pages of its model. Cells that
+/// came back without a mesh are confirmed with the same message.
 struct FreedSlot
 {
     ContentKind kind{ContentKind::chunk};
     std::uint32_t slot{0};       ///< Slot; for a base mesh its model.
-    std::uint32_t generation{0}; ///< Generation before which requests for a base mesh are void.
+    std::uint32_t generation{0}; ///< Requests for a base mesh with a lower generation are void.
 };
 
 /// A request of the haptic thread for a piece. Requests of an older generation may be dropped.
@@ -35,8 +35,8 @@ struct PieceRequest
 /// Queues between the transport thread and the haptic thread, for all models. Only slots, words of
 /// linked bits and requests pass through them, each kind in order.
 ///
-/// A slot of PageSlots (a page, or an index page), and the cells of a base mesh, which the haptic
-/// thread lends with its request, have one owner at a time:
+/// A slot of PageSlots (page or index page) has one owner at a time. So have the cells of a base
+/// mesh, which the haptic thread lends with its request:
 ///
 ///     transport: loan (parse into it) -> fill -> hand over (`arrived`)
 ///     haptic:    adopt -> use -> evict -> free (`freed`) -> the transport's again
@@ -44,17 +44,17 @@ struct PieceRequest
 /// Cells for which no base mesh arrived are returned through `arrived`; the haptic thread confirms
 /// that through `freed`, so that no older request lends them again.
 ///
-/// At start every slot is the transport's. `arrived` keeps arrivals and link updates in one order,
-/// so a frame's input is what it popped, independent of thread timing.
+/// Every slot starts as the transport's. `arrived` keeps arrivals and link updates in one order, so
+/// a frame's input is what it popped, independent of thread timing.
 struct SlotQueues
 {
-    /// Requests of all models under way at once, the memory of the transport side. With more it
-    /// would drop the oldest, regardless of priority, and dropped requests are repeated only after
-    /// the timeout.
+    /// Largest number of requests under way, of all models: the transport thread remembers no more.
+    /// It would drop the oldest, regardless of priority, and dropped requests are repeated only
+    /// after the timeout.
     static constexpr std::uint32_t kOpenRequests = 256;
 
-    /// Queues for `slots` slots in all, which always fit, for link updates as long as those leave
-    /// room for arrivals (has_room_for_update()), and for `requests` requests.
+    /// `slots` is the number of all slots: `arrived` and `freed` have room for each. `arrived` also
+    /// holds link updates (has_room_for_update()), and `wanted` holds `requests`.
     SlotQueues(Arena& arena, std::size_t slots, std::size_t requests) noexcept
         : arrived(arena.take<QueueEvent>(slots + kMaxLinkUpdatesPerFrame))
         , freed(arena.take<FreedSlot>(std::max<std::size_t>(slots, 1)))

@@ -43,7 +43,7 @@ private:
         const std::size_t on_the_way = pool.queues.freed.size();
         finder_.expect(on_the_way <= pages + index_pages + pool.caches_.size(), "cache",
                        static_cast<std::uint32_t>(on_the_way),
-                       "slots are on their way back, more than are not its own");
+                       "slots are on their way back, more than there are free slots");
     }
 
     void check_index() noexcept
@@ -64,13 +64,13 @@ private:
                 continue;
             }
             finder_.expect(cache_.find_index_page(page) == slot, "index page", page.value,
-                           "is found elsewhere or nowhere");
+                           "is not found in its slot");
             finder_.expect(cache_.slots_.index_pages[slot].chunks ==
                                chunks_in_index_page(counts, page),
                            "index page", page.value, "has too few or too many chunks");
         }
         finder_.expect(resident == cache_.index_pages_used_, "cache", resident,
-                       "index pages are in its slots, and its index has others");
+                       "index pages are in its slots, but its index differs");
     }
 
     template <typename IsAway>
@@ -78,7 +78,7 @@ private:
                         const IsAway& is_away) noexcept
     {
         finder_.expect(resident == requests.slots_had(), thing, resident,
-                       "slots are used here, and its pool counts others");
+                       "slots are used, but the pool's count differs");
         std::uint32_t requested = 0;
         const RequestPool& pool = *requests.pool_;
         for (std::uint32_t place = 0; place < pool.requests_.size(); ++place)
@@ -91,13 +91,13 @@ private:
             ++requested;
             const std::uint32_t number = request.key - requests.first_key_;
             finder_.expect(pool.place_of_.find(request.key) == place, thing, number,
-                           "is requested twice, or is not known to be");
-            finder_.expect(is_away(number), thing, number, "is requested and here");
+                           "is requested twice, or is missing in the list");
+            finder_.expect(is_away(number), thing, number, "is requested and resident");
             finder_.expect(request.asked <= cache_.frame_, thing, number,
                            "was requested in a later frame");
         }
         finder_.expect(requested == requests.under_way_, thing, requested,
-                       "requests are under way, and the list counts others");
+                       "requests are under way, but the list's count differs");
     }
 
     const ChunkCache& cache_;

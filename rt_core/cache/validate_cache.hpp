@@ -11,8 +11,8 @@ namespace tactus
 
 /// Checks the invariants of a chunk cache; its page table must be sound already.
 ///
-///     slots      each is a page's (or an index page's) here, or counted as the transport thread's;
-///                a slot that waits to be taken back is the transport thread's
+///     slots      each holds a page or an index page, or counts as the transport thread's, as do
+///                slots on their way there
 ///     index      each index page has one slot, found by its number, with as many chunks as it
 ///                should have
 ///     requests   each piece is requested once and is not resident

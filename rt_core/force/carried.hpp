@@ -10,26 +10,25 @@
 namespace tactus
 {
 
-/// Number that no object has.
+/// Object number that stands for no object.
 inline constexpr std::uint32_t kNoObject = 0xFFFF'FFFFU;
 
-/// Place of a proxy after the objects near it have moved.
+/// Result of carried(): the place of a proxy after the objects near it have moved.
 template <typename Place>
 struct Carried
 {
     Place place;
-    /// The object that carried it; null if it stayed.
+    /// Object that carried the proxy; null if the proxy stayed.
     const NearObject* by{nullptr};
-    /// An object may have passed over it at any of the places tried.
+    /// True if an object may have passed over the proxy, at every place tried.
     bool is_overrun{false};
 };
 
-/// Carries a proxy along with the object that holds it, or else with one that would pass over it,
-/// so that it keeps its place before that object's surface. Otherwise the proxy stays. Reports
-/// is_overrun if an object passes over it in each case.
+/// Carries a proxy along with the object that holds it. If an object may then pass over the proxy,
+/// tries the proxy's old place, and then to carry it along with each moved object.
 ///
-/// `along(object)` is its place when carried by an object; `is_overrun(place)` is true if the proxy
-/// may be on another side of some surface there. Haptic thread.
+/// `along(object)` is the place of a proxy carried by the object. `is_overrun(place)` is true if a
+/// proxy moved to `place` may have changed the side of some surface. Haptic thread.
 template <typename Place, typename Along, typename Overrun>
 [[nodiscard]] Carried<Place> carried(const Place& stays, std::span<const NearObject> objects,
                                      std::uint32_t held_by, const Along& along,

@@ -8,38 +8,37 @@
 namespace tactus
 {
 
-/// Force of a proxy that waited for data and then moves at once: it continues from its old value
-/// and catches up.
+/// Continuation of a force after its proxy waited for data and then moves at once: the sent force
+/// starts at its old value and catches up with the wanted force.
 ///
 ///     wanted     ________----------
 ///                       |      __--
 ///     sent       _______|__----
 ///                 waits | free again
 ///
-/// After a frame in which the proxy waited, the force approaches the wanted one. Its change per
-/// frame is limited to that by the device's displacement, plus the rate. The remaining lag
-/// decreases by the rate. Otherwise the force is the wanted one to the last bit. A lagging force
-/// may briefly point into a surface that has rotated meanwhile. For torques the same with newton
-/// metres. Haptic thread; about 10 ns.
+/// After a frame in which the proxy waited, the sent force approaches the wanted one by at most
+/// `rate_per_s` and, in that frame, `by_hand`. Otherwise it is the wanted force to the last bit. A
+/// lagging force may briefly point into a surface that has rotated meanwhile. Torques follow the
+/// same law in newton metres. Haptic thread; about 10 ns.
 class CatchUp
 {
 public:
-    /// Next force to send.
+    /// Input of next(), which returns the next force to send.
     /// - `wanted` is no longer than `longest`.
     /// - `rate_per_s` > 0.
     struct Command
     {
         Vec3 wanted{0.0, 0.0, 0.0};
-        /// Largest change by the device's displacement since the last frame.
+        /// Largest change of the force by the device's displacement since the last frame.
         double by_hand{0.0};
-        double longest{0.0}; ///< Largest norm of the result.
+        double longest{0.0}; ///< Largest norm of the next force.
         double rate_per_s{0.0};
         double elapsed_s{0.0};
-        bool has_waited{false}; ///< The last frame's proxy waited.
+        bool has_waited{false}; ///< True if the proxy waited for data in the last frame.
     };
     [[nodiscard]] Vec3 next(const Command& commanded) noexcept TACTUS_NONBLOCKING;
 
-    /// Continues from `sent`, which replaced the last result.
+    /// Replaces the last result of next() by `sent`, and clears the lag.
     void follow(const Vec3& sent) noexcept
     {
         sent_ = sent;
@@ -48,7 +47,7 @@ public:
 
 private:
     Vec3 sent_{0.0, 0.0, 0.0};
-    Vec3 lag_{0.0, 0.0, 0.0}; ///< Sent minus wanted.
+    Vec3 lag_{0.0, 0.0, 0.0}; ///< Sent force minus wanted force.
 };
 
 } // namespace tactus

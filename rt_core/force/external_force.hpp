@@ -18,14 +18,14 @@ struct ExternalForce
 {
     Vec3 force_n{0.0, 0.0, 0.0};
     Vec3 torque_nm{0.0, 0.0, 0.0};
-    /// Change of the force with displacement, if it is a spring. 0: it is none, and its work on the
-    /// user is energy without a source, which is damped as such in contact.
+    /// Stiffness, if the force is a spring. 0: it is no spring, and its work on the user is energy
+    /// without a source, which the passivity controller damps in contact.
     double stiffness_n_per_m{0.0};
-    double stiffness_nm_per_rad{0.0}; ///< The same for the torque.
-    double gripper_n{0.0};            ///< Above 0 it opens the gripper.
+    double stiffness_nm_per_rad{0.0}; ///< Stiffness of the torque; 0: it is no spring.
+    double gripper_n{0.0};            ///< Force on the gripper; above 0 it opens the gripper.
 };
 
-/// A spring from the tool at `place_m` to a point, with a limited force. Stiffness and largest
+/// Spring from the tool at `place_m` to `point_m`, with a limited force. Stiffness and largest
 /// force must be finite and not negative.
 [[nodiscard]] inline ExternalForce spring_to(const Vec3& point_m, const Vec3& place_m,
                                              double stiffness_n_per_m, double force_max_n) noexcept
@@ -36,8 +36,8 @@ struct ExternalForce
     return spring;
 }
 
-/// Combines two springs on one device into one: forces and stiffnesses add, and the stretch is set
-/// so that it holds the energy of both. A spring without force changes no bit.
+/// Adds a second spring to `wall`: forces and stiffnesses add, and the stretch is set so that the
+/// sum holds the energy of both. A second spring without force changes nothing.
 inline void add_spring(SpringForce& wall, const Vec3& force_n, double stiffness_n_per_m) noexcept
 {
     if (force_n == Vec3(0.0, 0.0, 0.0))
@@ -61,11 +61,11 @@ inline void add_spring(SpringForce& wall, const Vec3& force_n, double stiffness_
     }
 }
 
-/// Adds the program's force to that of the surfaces, for the WrenchConditioner.
+/// Adds the program's force `own` to the force of the surfaces, for the WrenchConditioner.
 inline void add_external(ToolForce& force, const ExternalForce& own) noexcept
 {
     add_spring(force.push, own.force_n, own.stiffness_n_per_m);
-    add_spring(force.turn, own.torque_nm, own.stiffness_nm_per_rad);
+    add_spring(force.torque, own.torque_nm, own.stiffness_nm_per_rad);
     force.own_n = own.force_n.norm();
 }
 

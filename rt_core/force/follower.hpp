@@ -13,9 +13,10 @@
 namespace tactus
 {
 
-/// Query-only tool: it is at the device pose, in surfaces too, and has no force.
+/// State of a query-only tool: the tool is at the device pose, even inside surfaces, and has no
+/// force.
 ///
-/// Has the functions of Proxy and RigidProxy. Haptic thread.
+/// The functions are those of Proxy and RigidProxy. Haptic thread.
 class Follower
 {
 public:
@@ -33,14 +34,14 @@ public:
     /// Displacement of the core's farthest point since the last frame.
     [[nodiscard]] double way_to_m(const ProxyGoal& /*goal*/) const noexcept { return way_m_; }
 
-    /// Reports contact if an upper bound proves that the tool touches.
+    /// Output without force; in contact if an upper bound proves that the tool touches.
     [[nodiscard]] ToolOutput respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
                                      double clear_m) const noexcept TACTUS_NONBLOCKING;
 
 private:
     double radius_m_;
     ToolCore core_;
-    Similarity place_; ///< Pose in the world.
+    Similarity place_; ///< Pose of the tool in the world.
     double way_m_{0.0};
 };
 

@@ -21,18 +21,18 @@ namespace
 
 bool is_stiffness(double value) noexcept
 {
-    return value >= 0.0 && value <= std::numeric_limits<double>::max(); // False for NaN.
+    return value >= 0.0 && value <= std::numeric_limits<double>::max(); // NaN gives false.
 }
 
-/// Energy that a wall's spring returns when the tool leaves: a triangle. If the force is clamped to
-/// `force_n`, below stiffness x stretch: triangle and rectangle.
+/// Energy that a wall's spring returns when the tool leaves: the triangle below force over stretch.
+/// If the force is clamped below stiffness x stretch, a rectangle is added.
 double spring_energy_j(double force_n, double stiffness_n_per_m, double stretch_m) noexcept
 {
     const double least_stretch = force_n / stiffness_n_per_m;
     return force_n * (std::max(stretch_m, least_stretch) - 0.5 * least_stretch);
 }
 
-/// Set-up for a device that produces torques.
+/// Set-up for the torque of a device: `setup` with angles for lengths.
 ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 {
     ConditionerSetup angles = setup;
@@ -45,10 +45,10 @@ ConditionerSetup in_angles(const ConditionerSetup& setup) noexcept
 
 ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
     : setup_(setup)
-    , cap_step_n_per_m_(stiffness_limit(setup.device, setup.period_s) * setup.period_s /
-                        kMaterialBlend_s)
+    , limit_step_n_per_m_(stiffness_limit(setup.device, setup.period_s) * setup.period_s /
+                          kMaterialBlend_s)
     , allowed_n_per_m_(stiffness_limit(setup.device, setup.period_s))
-    , cap_n_per_m_(allowed_n_per_m_)
+    , limit_n_per_m_(allowed_n_per_m_)
     , velocity_(setup.device.quantum_m)
     , sent_(setup.device.delay_s / setup.period_s)
     , observer_(setup.device, setup.period_s)
@@ -59,7 +59,7 @@ ForceConditioner::ForceConditioner(const ConditionerSetup& setup) noexcept
 
 double ForceConditioner::begin(SpringForce& force, const DeviceStep& device) noexcept
 {
-    cap_for(force, device.surface_damping_n_s_per_m);
+    limit_stiffness(force, device.surface_damping_n_s_per_m);
     const bool is_observed = observe(device);
     gain_ = limit(force);
     if (!is_observed || !sent_.knows_delay())
@@ -95,8 +95,8 @@ void ForceConditioner::follow(const SpringForce& sent, bool is_ramp) noexcept
     hold(sent, true);
 }
 
-/// Observes the energy since the last frame. False if the position is unusable; then the next one
-/// counts as the first.
+/// Observes the energy since the last frame. False if the position is unusable; the next position
+/// then counts as the first one.
 bool ForceConditioner::observe(const DeviceStep& device) noexcept
 {
     const std::uint32_t periods = std::max<std::uint32_t>(device.elapsed_periods, 1);
@@ -124,9 +124,10 @@ bool ForceConditioner::observe(const DeviceStep& device) noexcept
     return is_usable;
 }
 
-/// Sets the stiffness limit. Most frames touch the same surfaces as the last one. If the surface
-/// damping changes, the limit moves in steps under a force, and at once in free air.
-void ForceConditioner::cap_for(const SpringForce& force, double surface_damping_n_s_per_m) noexcept
+/// Sets the stiffness limit for the present surface damping. If the damping has changed, the limit
+/// moves in steps under a force, and at once without one.
+void ForceConditioner::limit_stiffness(const SpringForce& force,
+                                       double surface_damping_n_s_per_m) noexcept
 {
     if (surface_damping_n_s_per_m != surface_damping_n_s_per_m_)
     {
@@ -134,15 +135,15 @@ void ForceConditioner::cap_for(const SpringForce& force, double surface_damping_
         allowed_n_per_m_ =
             stiffness_limit(setup_.device, setup_.period_s, surface_damping_n_s_per_m_);
     }
-    if (cap_n_per_m_ != allowed_n_per_m_)
+    if (limit_n_per_m_ != allowed_n_per_m_)
     {
         const bool is_touching = force.force_n != Vec3(0.0, 0.0, 0.0);
-        const double step = is_touching ? cap_step_n_per_m_ : kInfinity;
-        cap_n_per_m_ = std::clamp(allowed_n_per_m_, cap_n_per_m_ - step, cap_n_per_m_ + step);
+        const double step = is_touching ? limit_step_n_per_m_ : kInfinity;
+        limit_n_per_m_ = std::clamp(allowed_n_per_m_, limit_n_per_m_ - step, limit_n_per_m_ + step);
     }
 }
 
-/// Limits the force to the device's range. Returns the remaining share.
+/// Limits the force to the device's range. Returns the share of the force that is left, 0 .. 1.
 double ForceConditioner::limit(SpringForce& force) const noexcept
 {
     force.actions = ForceAction::none;
@@ -154,15 +155,15 @@ double ForceConditioner::limit(SpringForce& force) const noexcept
         force.actions = ForceAction::refused;
         return 0.0;
     }
-    const bool is_too_stiff = force.stiffness_n_per_m > cap_n_per_m_;
-    const double scale = is_too_stiff ? cap_n_per_m_ / force.stiffness_n_per_m : 1.0;
+    const bool is_too_stiff = force.stiffness_n_per_m > limit_n_per_m_;
+    const double scale = is_too_stiff ? limit_n_per_m_ / force.stiffness_n_per_m : 1.0;
     const Vec3 capped_n = force.force_n * scale;
     force.force_n = clamp_norm(capped_n, setup_.device.force_max_n);
     const bool is_clamped = force.force_n != capped_n;
     force.stiffness_n_per_m *= scale;
     force.actions |= is_too_stiff ? ForceAction::stiffness_limited : ForceAction::none;
     force.actions |= is_clamped ? ForceAction::clamped : ForceAction::none;
-    // Ratio by the largest coordinates: the square of a huge value is infinite.
+    // The ratio is taken of the largest coordinates, as the square of a huge value is infinite.
     const double share =
         is_clamped && has_direction(capped_n)
             ? largest_coordinate({&force.force_n, 1}) / largest_coordinate({&capped_n, 1})
@@ -170,7 +171,7 @@ double ForceConditioner::limit(SpringForce& force) const noexcept
     return scale * share;
 }
 
-/// Sets the energy of this force's spring; `is_again` replaces the last value.
+/// Reports the energy of this force's spring to the observer; `is_again` replaces the last report.
 void ForceConditioner::hold(const SpringForce& force, bool is_again) noexcept
 {
     const double force_n = force.force_n.norm();
@@ -209,7 +210,7 @@ void ForceConditioner::damp(SpringForce& force) const noexcept
 
 WrenchConditioner::WrenchConditioner(const ConditionerSetup& setup) noexcept
     : push_(setup)
-    , turn_(setup.device.rotation.torque_max_nm > 0.0 ? in_angles(setup) : setup)
+    , torque_(setup.device.rotation.torque_max_nm > 0.0 ? in_angles(setup) : setup)
     , has_torque_(setup.device.rotation.torque_max_nm > 0.0)
     , lever_max_m_(setup.lever_max_m)
     , rotational_damping_max_nm_s_per_rad_(kDampingShare *
@@ -220,23 +221,24 @@ WrenchConditioner::WrenchConditioner(const ConditionerSetup& setup) noexcept
 void WrenchConditioner::condition(ToolForce& force, const ToolPeriod& period) noexcept
 {
     const double damping = period.surface_damping_n_s_per_m;
-    double gain =
-        push_.begin(force.push, {period.hand_m, period.elapsed_periods, damping, period.carried_m});
+    double gain = push_.begin(force.push,
+                              {period.device_m, period.elapsed_periods, damping, period.carried_m});
     if (has_torque_)
     {
         const double rotational_damping =
             std::min(damping * lever_max_m_ * lever_max_m_, rotational_damping_max_nm_s_per_rad_);
-        gain = std::min(gain, turn_.begin(force.turn, {period.turned_rad, period.elapsed_periods,
-                                                       rotational_damping, period.carried_rad}));
-        turn_.finish(force.turn, gain);
+        gain =
+            std::min(gain, torque_.begin(force.torque, {period.turned_rad, period.elapsed_periods,
+                                                        rotational_damping, period.carried_rad}));
+        torque_.finish(force.torque, gain);
     }
     else
     {
-        force.turn = {};
+        force.torque = {};
     }
     push_.finish(force.push, gain);
     last_n_ = force.push.force_n;
-    last_nm_ = force.turn.force_n;
+    last_nm_ = force.torque.force_n;
 }
 
 void WrenchConditioner::follow(const ToolForce& sent, bool is_ramp) noexcept
@@ -245,9 +247,9 @@ void WrenchConditioner::follow(const ToolForce& sent, bool is_ramp) noexcept
     {
         push_.follow(sent.push, is_ramp);
     }
-    if (has_torque_ && sent.turn.force_n != last_nm_)
+    if (has_torque_ && sent.torque.force_n != last_nm_)
     {
-        turn_.follow(sent.turn, is_ramp);
+        torque_.follow(sent.torque, is_ramp);
     }
 }
 

@@ -15,32 +15,33 @@
 namespace tactus
 {
 
-/// Settings that are fixed while the loop runs.
+/// Settings of a ForceConditioner, fixed while the loop runs.
 struct ConditionerSetup
 {
-    DeviceLimits device;   ///< Limits in world coordinates, as in DeviceInfo.
+    DeviceLimits device;   ///< Limits of the device in world coordinates, as in DeviceInfo.
     double period_s{1e-3}; ///< Period of the loop; above 0.
-    /// Largest distance from the device's position at which a surface may touch the tool: it damps
-    /// rotation by at most its damping x the square of this, which lowers the limit of the angular
-    /// stiffness. No more than half of the device's own damping is counted; beyond that the
-    /// passivity controller acts. >= 0.
+    /// Largest distance from the device's position at which a surface may touch the tool, >= 0. A
+    /// surface damping times its square damps the rotation and lowers the limit of the angular
+    /// stiffness. Surface damping counts up to kDampingShare of the device's own damping; the
+    /// passivity controller acts beyond that.
     double lever_max_m{0.0};
-    bool controls_passivity{true}; ///< False: observes only.
-    /// Speed above which the device has jumped: its energy isn't observed.
+    bool controls_passivity{true}; ///< False: the energy is only observed, without damping.
+    /// Device speed above which a displacement counts as a jump: its energy is not observed.
     double speed_max_m_per_s{kDeviceSpeedMax_m_per_s};
 };
 
-/// State of a device for a commanded force. For torques in angles: the position is the device's
-/// rotation about the world's axes, summed up.
+/// State of a device for one commanded force. If the force is a torque, metres stand for radians:
+/// the position is the sum of the device's rotations about the world's axes.
 struct DeviceStep
 {
     Vec3 position_m{0.0, 0.0, 0.0}; ///< Position of this frame's sample.
     /// Whole periods since the last step; above 1 after a stall. 0 counts as 1.
     std::uint32_t elapsed_periods{1};
-    /// Largest surface damping of the touched objects: it lowers the stiffness limit. Finite, >= 0.
+    /// Largest surface damping of the touched objects, which lowers the stiffness limit. Finite, >=
+    /// 0.
     double surface_damping_n_s_per_m{0.0};
-    /// Displacement of the wall since the last step by those who move it: the force's work along it
-    /// isn't the wall's.
+    /// Displacement of the wall since the last step, by the movers of the object: the force's work
+    /// along it does not count as the wall's.
     Vec3 carried_m{0.0, 0.0, 0.0};
 };
 
@@ -59,13 +60,12 @@ struct DeviceStep
 ///     damping   against the velocity, if the port has given away energy (PassivityObserver)
 ///     clamp     again
 ///
-/// The first stage only shortens the force. The damping is bounded by the device's
-/// added_damping_max_n_s_per_m, acts only on a force, and never turns a push into a pull. The rate
-/// of change is limited by a ChangeLimit after this, and a ForceFader fades the first force in.
-/// docs/stability.md has the figures.
+/// The first stage only shortens the force. The damping acts only on a force above zero, is at most
+/// the device's added_damping_max_n_s_per_m, and never turns a push into a pull. Later stages are
+/// ForceFader, which fades the first force in, and ChangeLimit. docs/stability.md has the figures.
 ///
-/// Haptic thread, once a frame and tool: after Frame::run(), before the ForceFader. Cost: about a
-/// microsecond, most of it the velocity's.
+/// Haptic thread, once a frame and tool, between Frame::run() and ForceFader. About a microsecond,
+/// most of it for the velocity.
 class ForceConditioner
 {
 public:
@@ -73,31 +73,31 @@ public:
     /// - `setup.period_s` > 0 (asserted).
     explicit ForceConditioner(const ConditionerSetup& setup) noexcept;
 
-    /// Replaces the commanded force by the one to write now, to which the energy of the next period
-    /// belongs.
+    /// Replaces the commanded force by the force to write now. The energy of the next period is
+    /// attributed to the result.
     void condition(SpringForce& force, const DeviceStep& device) noexcept TACTUS_NONBLOCKING
     {
         finish(force, begin(force, device));
     }
 
-    /// The same in two steps, for springs that share a gain: begin() returns the share of the
-    /// commanded force, 0 .. 1, that cap and clamp leave; finish() computes the force with that
+    /// condition() in two steps, for springs that share a gain: begin() returns the share of the
+    /// commanded force, 0 .. 1, that cap and clamp leave. finish() computes the force with that
     /// gain or less.
     /// - finish() follows each begin(), with the same force; `gain` in 0 .. 1.
     [[nodiscard]] double begin(SpringForce& force,
                                const DeviceStep& device) noexcept TACTUS_NONBLOCKING;
     void finish(SpringForce& force, double gain) noexcept TACTUS_NONBLOCKING;
 
-    /// Continues from `sent`, which replaced the last result of condition(); finite. `is_ramp`: a
-    /// gain fades the force in, and energy that this adds beyond the spring's is forgiven.
-    /// Otherwise it counts as any other.
+    /// Replaces the last result of condition() by `sent`, the finite force that later stages made
+    /// of it. `is_ramp`: a gain fades the force in, and observed energy is cleared. Otherwise
+    /// energy counts as ever.
     void follow(const SpringForce& sent, bool is_ramp) noexcept TACTUS_NONBLOCKING;
 
-    /// The stiffest wall that is not scaled, with the surface damping of the last step.
-    [[nodiscard]] double stiffness_limit_n_per_m() const noexcept { return cap_n_per_m_; }
+    /// Stiffness above which a wall is scaled down, with the surface damping of the last step.
+    [[nodiscard]] double stiffness_limit_n_per_m() const noexcept { return limit_n_per_m_; }
 
 private:
-    void cap_for(const SpringForce& force, double surface_damping_n_s_per_m) noexcept;
+    void limit_stiffness(const SpringForce& force, double surface_damping_n_s_per_m) noexcept;
     [[nodiscard]] bool observe(const DeviceStep& device) noexcept;
     [[nodiscard]] double limit(SpringForce& force) const noexcept;
     void hold(const SpringForce& force, bool is_again) noexcept;
@@ -105,10 +105,11 @@ private:
 
     ConditionerSetup setup_;
     double surface_damping_n_s_per_m_{0.0};
-    /// Largest change of the limit per period under a force.
-    double cap_step_n_per_m_;
-    double allowed_n_per_m_; ///< Limit of the rule with that damping.
-    double cap_n_per_m_;     ///< Limit in use, which moves towards that.
+    /// Largest change of limit_n_per_m_ per period under a force.
+    double limit_step_n_per_m_;
+    /// Stiffness limit of stiffness_rule.hpp with surface_damping_n_s_per_m_.
+    double allowed_n_per_m_;
+    double limit_n_per_m_; ///< Stiffness limit in use, which moves towards allowed_n_per_m_.
     VelocityWindow velocity_;
     SentForces sent_;
     PassivityObserver observer_;
@@ -117,28 +118,28 @@ private:
     double gain_{0.0}; ///< Result of begin(), for finish().
 };
 
-/// A conditioner for the force and one for the torque, by the same law in lengths and in angles. If
-/// one of them is capped or clamped, both are shortened by one gain. An invalid value in one
-/// removes both. So a wrench keeps its line of action. Each has its own damping.
+/// Conditioners for force and torque, with the same law in lengths and in angles. If one of the two
+/// is capped or clamped, both are shortened by one gain, and an invalid value in one removes both:
+/// a wrench keeps its line of action. Each has its own damping.
 class WrenchConditioner
 {
 public:
-    /// Same set-up as ForceConditioner. A device without torque gets none.
+    /// Set-up for the force; that of the torque follows from it. A device without torque gets none.
     explicit WrenchConditioner(const ConditionerSetup& setup) noexcept;
 
-    /// Conditions the push and turn of `force` with the device's motion and the carried motion of
-    /// `period`.
+    /// Conditions push and torque of `force`, with the motion of device and objects in `period`.
     void condition(ToolForce& force, const ToolPeriod& period) noexcept TACTUS_NONBLOCKING;
 
-    /// Same as ForceConditioner::follow(), for each of both that was changed.
+    /// ForceConditioner::follow() for force and torque, each only if a later stage changed it.
     void follow(const ToolForce& sent, bool is_ramp) noexcept TACTUS_NONBLOCKING;
 
 private:
     ForceConditioner push_;
-    ForceConditioner turn_;
+    ForceConditioner torque_;
     bool has_torque_;
     double lever_max_m_;
-    double rotational_damping_max_nm_s_per_rad_; ///< Limit of the counted surface damping.
+    /// Limit of the surface damping that counts for rotations.
+    double rotational_damping_max_nm_s_per_rad_;
     Vec3 last_n_{0.0, 0.0, 0.0};
     Vec3 last_nm_{0.0, 0.0, 0.0};
 };

@@ -18,7 +18,7 @@ namespace
 constexpr FrameFault kSampleFaults =
     FrameFault::tool_invalid | FrameFault::tool_stuck | FrameFault::tool_jumped;
 
-/// Causes under which the frame's force is that of a held proxy.
+/// Causes of a held proxy, under which the frame's force still comes from good data.
 constexpr ForceOff kHeldProxy = ForceOff::halted | ForceOff::over_constrained | ForceOff::starved;
 
 bool is_trusted(ForceOff causes) noexcept
@@ -36,7 +36,7 @@ bool is_finite(const Vec3& v) noexcept
     return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-/// `v`, shortened to this norm if it is longer.
+/// Returns `v`, shortened to `norm_max` if it is longer.
 Vec3 shortened(const Vec3& v, double norm_max) noexcept
 {
     const double norm = v.norm();
@@ -81,13 +81,14 @@ void ForceFader::fade(ToolForce& force, double elapsed_s, ForceOff cause) noexce
     let_out(force, cause);
 }
 
-/// The fading base is from before the cause, so the fade itself is no part of it.
+/// Sets the base only if the last result was not a fade: a fading base is the force from before the
+/// cause.
 void ForceFader::follow(const ToolForce& sent) noexcept
 {
     if (gain_ > 0.0 && !is_fading_)
     {
         base_n_ = (sent.push.force_n - damping_n_) / gain_;
-        base_nm_ = (sent.turn.force_n - damping_nm_) / gain_;
+        base_nm_ = (sent.torque.force_n - damping_nm_) / gain_;
     }
 }
 
@@ -104,13 +105,13 @@ void ForceFader::let_out(ToolForce& force, ForceOff causes) noexcept
     is_fading_ = !is_trusted(causes);
     state_ = next_state(causes);
     force.push.force_n = shortened(gain_ * base_n_ + damping_n_, limits_.force_max_n);
-    force.turn.force_n = shortened(gain_ * base_nm_ + damping_nm_, limits_.torque_max_nm);
+    force.torque.force_n = shortened(gain_ * base_nm_ + damping_nm_, limits_.torque_max_nm);
     force.state = state_;
     force.causes = causes;
 }
 
-/// Takes the speed from the device, or from the displacements and rotations between new samples
-/// over the true times between them.
+/// Takes the speed from the device, or from the motion between its last two new samples and the
+/// true time between them.
 void ForceFader::observe_speed(const ToolPeriod& period) noexcept
 {
     since_sample_s_ += period.elapsed_s;
@@ -131,7 +132,7 @@ void ForceFader::observe_speed(const ToolPeriod& period) noexcept
     }
     else if (has_sample_ && since_sample_s_ > 0.0)
     {
-        velocity_m_per_s_ = (period.hand_m - position_m_) / since_sample_s_;
+        velocity_m_per_s_ = (period.device_m - position_m_) / since_sample_s_;
     }
     if (period.has_rotation && is_finite(period.rotation_rad_per_s))
     {
@@ -141,7 +142,7 @@ void ForceFader::observe_speed(const ToolPeriod& period) noexcept
     {
         rotation_rad_per_s_ = (period.turned_rad - turned_rad_) / since_sample_s_;
     }
-    position_m_ = period.hand_m;
+    position_m_ = period.device_m;
     turned_rad_ = period.turned_rad;
     sample_time_ns_ = period.sample_time_ns;
     since_sample_s_ = 0.0;
@@ -164,7 +165,7 @@ ForceOff ForceFader::find_causes(const ToolForce& force, const ToolPeriod& perio
            when(period.force_left < 1.0, ForceOff::watchdog) |
            when(has_fault(period.faults, FrameFault::tool_stuck), ForceOff::stale) |
            when(has_fault(period.faults, FrameFault::tool_invalid | FrameFault::tool_jumped) ||
-                    !is_finite(force.push.force_n) || !is_finite(force.turn.force_n),
+                    !is_finite(force.push.force_n) || !is_finite(force.torque.force_n),
                 ForceOff::garbage) |
            when(has_fault(period.faults, FrameFault::object_lost), ForceOff::jump) |
            when(has_fault(period.faults, FrameFault::proxy_halted), ForceOff::halted) |
@@ -188,13 +189,14 @@ void ForceFader::move_gain(const ToolPeriod& period, ForceOff causes) noexcept
     {
         gain_ = std::min(gain_ + period.elapsed_s / kRiseTime_s, 1.0);
     }
-    // Another device, or the same one after it was moved: its first sample starts over.
+    // After a disconnection the first sample starts over: the device may be another one, or may
+    // have been moved.
     has_sample_ = has_sample_ && (gain_ > 0.0 || !has_cause(causes, ForceOff::disconnect));
     is_following_ = is_following_ && is_trusted(causes);
 }
 
 /// False if the user is so deep in a wall that the device can't produce the spring's force: the
-/// user has to come out first.
+/// user must come out first.
 bool ForceFader::may_begin(const ToolPeriod& period) const noexcept
 {
     const double spring_n = limits_.stiffness_n_per_m * period.stretch_m;
@@ -203,12 +205,12 @@ bool ForceFader::may_begin(const ToolPeriod& period) const noexcept
            (limits_.torque_max_nm <= 0.0 || spring_nm <= limits_.torque_max_nm);
 }
 
-/// Moves the base towards the frame's force. At full gain, once reached, the frame's force is sent
-/// as it is. If no force was felt the base is reached at once.
+/// Moves the base towards the frame's force. Once it has arrived at full gain, the frame's force is
+/// sent as it is. If no force was sent, the base arrives at once.
 void ForceFader::catch_up(const ToolForce& force, double elapsed_s, bool was_off) noexcept
 {
     const Vec3 target_n = shortened(force.push.force_n, limits_.force_max_n);
-    const Vec3 target_nm = shortened(force.turn.force_n, limits_.torque_max_nm);
+    const Vec3 target_nm = shortened(force.torque.force_n, limits_.torque_max_nm);
     const Vec3 way_n = target_n - base_n_;
     const Vec3 way_nm = target_nm - base_nm_;
     const double share = elapsed_s / kRiseTime_s;

@@ -17,7 +17,7 @@ Vec3 clamp_norm(const Vec3& force_n, double norm_max_n) noexcept
     {
         return {0.0, 0.0, 0.0};
     }
-    // The largest coordinate first: squares of huge values are infinite.
+    // The largest coordinate is compared first, as squares of huge values are infinite.
     const double largest = largest_coordinate({&force_n, 1});
     const bool is_inside = largest <= norm_max_n && force_n.norm() <= norm_max_n;
     return is_inside ? force_n : Vec3(unit_of(force_n) * norm_max_n);

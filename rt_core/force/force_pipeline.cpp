@@ -23,7 +23,7 @@ constexpr ForceOff when(bool is_so, ForceOff cause) noexcept
     return is_so ? cause : ForceOff::none;
 }
 
-/// Component in this direction; 0 if the direction is zero.
+/// Component of `way` along `direction`; 0 if the direction is zero.
 double along(const Vec3& way, const Vec3& direction) noexcept
 {
     const double norm = direction.norm();
@@ -33,7 +33,7 @@ double along(const Vec3& way, const Vec3& direction) noexcept
 ChangeRule rule_of(const PipelineSetup& setup) noexcept
 {
     ChangeRule rule = setup.change;
-    rule.hand_speed_max_m_per_s = setup.limits.speed_max_m_per_s;
+    rule.device_speed_max_m_per_s = setup.limits.speed_max_m_per_s;
     rule.arm_m = std::sqrt(setup.angular_share_m2);
     return rule;
 }
@@ -83,13 +83,13 @@ const ToolForce& ForcePipeline::step(const ToolState& tool, const ToolOutput& ou
     take_frame(tool, output);
     add_external(force_, own);
     const Vec3 commanded_n = force_.push.force_n;
-    const Vec3 commanded_nm = force_.turn.force_n;
+    const Vec3 commanded_nm = force_.torque.force_n;
 
     conditioner_.condition(force_, period_);
     const Vec3 conditioned_n = force_.push.force_n;
-    const Vec3 conditioned_nm = force_.turn.force_n;
+    const Vec3 conditioned_nm = force_.torque.force_n;
     period_.causes |=
-        when(has_action(force_.push.actions | force_.turn.actions, ForceAction::refused) ||
+        when(has_action(force_.push.actions | force_.torque.actions, ForceAction::refused) ||
                  !std::isfinite(own.gripper_n),
              ForceOff::garbage);
     force_fader_.step(force_, period_);
@@ -97,7 +97,7 @@ const ToolForce& ForcePipeline::step(const ToolState& tool, const ToolOutput& ou
     force_.gripper_n = force_fader_.gain() * gripper_n_;
     gravity_.carry(force_, period_);
     const bool is_ramp =
-        force_.push.force_n != conditioned_n || force_.turn.force_n != conditioned_nm;
+        force_.push.force_n != conditioned_n || force_.torque.force_n != conditioned_nm;
     if (change_.hold(force_, period_))
     {
         gravity_.make_room(force_);
@@ -105,7 +105,7 @@ const ToolForce& ForcePipeline::step(const ToolState& tool, const ToolOutput& ou
     }
     conditioner_.follow(force_, is_ramp);
     change_.follow(force_, force_.push.force_n == commanded_n ? own.force_n : kZero,
-                   force_.turn.force_n == commanded_nm ? own.torque_nm : kZero);
+                   force_.torque.force_n == commanded_nm ? own.torque_nm : kZero);
     force_.has_changed = force_.state != was || force_.causes != was_off;
     return force_;
 }
@@ -121,7 +121,7 @@ const ToolForce& ForcePipeline::fade(double elapsed_s, ForceOff cause) noexcept
     return force_;
 }
 
-/// Collects the inputs of the stages.
+/// Collects the data of this period for the stages.
 void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
                          const DeviceRecord& device, const PeriodContext& context) noexcept
 {
@@ -136,23 +136,24 @@ void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
     period_.faults = faults_of(output);
     period_.is_touching = output.in_contact;
     period_.object_way_m = output.object_way_m;
-    period_.object_turn_rad = output.object_turn_rad;
+    period_.object_rotation_rad = output.object_rotation_rad;
     period_.carried_m = output.carried_m;
     period_.carried_rad = output.carried_rad;
 }
 
-/// True if the device pose is valid. An invalid place doesn't rotate.
+/// Reads the device's data; true if its pose is valid. An invalid pose does not change the
+/// rotation.
 bool ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept
 {
-    const DevicePose hand = device.hand.value_or(DevicePose{tool.position_m, tool.rotation});
-    period_.hand_m = hand.position_m;
+    const DevicePose pose = device.pose.value_or(DevicePose{tool.position_m, tool.rotation});
+    period_.device_m = pose.position_m;
     const bool is_place =
-        hand.position_m.allFinite() && is_rotation(hand.rotation, kRotationTolerance);
-    if (tool.valid && is_place && hand.rotation != period_.hand_rotation)
+        pose.position_m.allFinite() && is_rotation(pose.rotation, kRotationTolerance);
+    if (tool.valid && is_place && pose.rotation != period_.device_rotation)
     {
         period_.turned_rad +=
-            rotation_vector(orthonormalised(hand.rotation * period_.hand_rotation.transpose()));
-        period_.hand_rotation = hand.rotation;
+            rotation_vector(orthonormalised(pose.rotation * period_.device_rotation.transpose()));
+        period_.device_rotation = pose.rotation;
     }
     period_.has_velocity = device.velocity_m_per_s.has_value();
     period_.velocity_m_per_s = device.velocity_m_per_s.value_or(kZero);
@@ -173,8 +174,8 @@ void ForcePipeline::take_frame(const ToolState& tool, const ToolOutput& output) 
     period_.stretch_m = stretch.norm();
     period_.twist_rad = twist.norm();
     force_.push = {output.force_n, output.stiffness_n_per_m, along(stretch, output.force_n)};
-    force_.turn = {output.torque_nm, angular_share_m2_ * output.stiffness_n_per_m,
-                   along(twist, output.torque_nm)};
+    force_.torque = {output.torque_nm, angular_share_m2_ * output.stiffness_n_per_m,
+                     along(twist, output.torque_nm)};
     force_.load_n = kZero;
     force_.load_nm = kZero;
     force_.twist_rad = output.in_contact ? period_.twist_rad : 0.0;

@@ -15,27 +15,27 @@
 namespace tactus
 {
 
-/// Settings that are fixed while the loop runs.
+/// Settings of a ForcePipeline, fixed while the loop runs.
 struct PipelineSetup
 {
     ConditionerSetup conditioner;
     SafetyLimits limits;
-    ToolLoad load; ///< Its weight is at most the device's largest force.
-    /// The pipeline sets hand_speed_max_m_per_s (from `limits`) and arm_m itself.
+    ToolLoad load; ///< Payload; its weight must be at most the device's largest force.
+    /// Limits of the change; the pipeline sets device_speed_max_m_per_s (from `limits`) and arm_m.
     ChangeRule change;
-    /// The tool's angular stiffness over its stiffness; 0: a sphere, without rotation.
+    /// Angular stiffness of the tool over its stiffness; 0 for a sphere, which has no rotation.
     double angular_share_m2{0.0};
 };
 
-/// Set-up for a device with this tool at this period, without a payload. Above `speed_max_m_per_s`
-/// the device gets no force. The part of the tool's stiffness above the device's limit is ignored.
+/// Set-up for a device with this tool and loop period, without a payload. Above `speed_max_m_per_s`
+/// the device gets no force. Tool stiffness above the device's limit is cut.
 /// - `device` has no fault, `period_s` > 0, `tool.stiffness_n_per_m` > 0 (asserted).
 [[nodiscard]] PipelineSetup pipeline_setup(const ToolSpec& tool, const DeviceLimits& device,
                                            double period_s,
                                            double speed_max_m_per_s) noexcept TACTUS_NONBLOCKING;
 
-/// All stages between the force of one tool's frame and its device. Only two other records carry
-/// the force: ToolOutput before it, and the device's command after it.
+/// All stages of force between the frame of one tool and its device. The stages pass on one
+/// ToolForce, made from a ToolOutput and converted to the device's command.
 ///
 ///     force of the frame    the proxy's spring, and the program's own (ExternalForce)
 ///     limits of the device  WrenchConditioner: cap, clamp
@@ -44,29 +44,29 @@ struct PipelineSetup
 ///     payload               GravityCompensation: the payload's force, in addition
 ///     change                ChangeLimit: no faster than device and objects move
 ///
-/// The stages before the last one receive its result. docs/safety.md has the laws.
+/// After the last stage, the earlier stages receive its result. docs/safety.md has the laws.
 ///
 /// Haptic thread, once a frame and tool, after Frame::run(). About 1.5 us; allocates nothing.
 class ForcePipeline
 {
 public:
-    /// - Each part in the ranges that its stage asserts.
+    /// - Each part of `setup` must be in the ranges that its stage asserts.
     explicit ForcePipeline(const PipelineSetup& setup) noexcept;
 
-    /// Force to send now. `tool` and `output` are the frame's of this period; `device` has the
-    /// device's other data, of which the sent forces are ignored. Any value of it that is no number
+    /// Force to send in this period. `tool` and `output` are those of the period's frame. `device`
+    /// has further data of the device; its sent forces are ignored. A value of it that is no number
     /// removes the force (ForceOff::garbage).
     const ToolForce& step(const ToolState& tool, const ToolOutput& output,
                           const DeviceRecord& device, const ExternalForce& own,
                           const PeriodContext& context) noexcept TACTUS_NONBLOCKING;
 
-    /// Replaces step() if there is no frame: the last force continues to fade.
+    /// Fades the last force on, in place of step() if there is no frame.
     /// - `elapsed_s` >= 0; `cause` is not none (asserted).
     const ToolForce& fade(double elapsed_s, ForceOff cause) noexcept TACTUS_NONBLOCKING;
 
-    /// Last result.
+    /// Result of the last step() or fade().
     [[nodiscard]] const ToolForce& force() const noexcept { return force_; }
-    /// Share of the force that is sent, 0 .. 1.
+    /// Gain of the ForceFader: share of the force that is sent, 0 .. 1.
     [[nodiscard]] double gain() const noexcept { return force_fader_.gain(); }
 
 private:
@@ -82,7 +82,7 @@ private:
     double angular_share_m2_;
     ToolPeriod period_;
     ToolForce force_;
-    double gripper_n_{0.0}; ///< Commanded in the last frame without a fault.
+    double gripper_n_{0.0}; ///< Gripper force commanded in the last frame without a fault.
 };
 
 } // namespace tactus

@@ -15,25 +15,26 @@ namespace tactus
 namespace
 {
 
-/// Greatest distance from the sphere of planes that count, as a share of the width.
+/// Largest distance of a plane from the sphere's surface at which its face has a weight, as a share
+/// of the width.
 constexpr double kHighest = 0x1p-3;
-/// Depth from which half of a step is left, as a share of the width.
+/// Depth D at which half of a step at an edge remains, as a share of the width.
 constexpr double kHalfDepth = 0x1p-4;
-/// Weight of the unknown surface beside a face as large as the width, near the sphere.
+/// Weight added for unknown surface, where a near face as large as the width has a weight of 1.
 constexpr double kUnknownWeight = 0.02;
-/// Square of the least share of its width that is evaluated.
+/// Square of the least share of the width that must be known for a shading.
 constexpr double kLeastWidth = 1e-4;
-/// Cosines of the angles to the touched surface: faces rotated by 17 degrees have their whole
-/// weight, those by 25 none.
+/// Cosines of the angles between a face and the touched surface up to which the face has its whole
+/// weight (17 degrees), and from which it has none (25 degrees).
 constexpr double kWholeCosine = 0.9563;
 constexpr double kNoCosine = 0.9063;
-/// Thinness below which a face has no direction and hardly any weight: square of twice its area
-/// over its edges' fourth power.
+/// Thinness below which a face is left out: square of twice its area over the fourth power of its
+/// longest edge.
 constexpr double kThinnest = 1e-20;
-/// Largest tangent between the mean normal and the touched surface's.
+/// Largest tangent of the angle between the mean normal and the contact's normal.
 constexpr double kSteepest = 0.5;
 
-/// (1 - t)^2 of a share of its range, and its derivative.
+/// Value (1 - t)^2 of a weight at a share t of its range, and its derivative.
 struct Bell
 {
     double value{0.0};
@@ -45,7 +46,7 @@ Bell bell_of(double share) noexcept
     return {rest * rest, -2.0 * rest};
 }
 
-/// Rises from 0 to 1 without a kink.
+/// Returns 0 below `from`, 1 above `to`, and between them a smooth step.
 double smooth_step(double from, double to, double value) noexcept
 {
     const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
@@ -54,8 +55,8 @@ double smooth_step(double from, double to, double value) noexcept
 
 } // namespace
 
-/// If far more faces than kMaxShadedFaces are near, they are much smaller than the width, and there
-/// is little to smooth.
+/// If more than kMaxShadedFaces faces are near, the known range ends at the nearest one left out.
+/// The faces are then much smaller than the width, and there is little to smooth.
 ForceShading::ForceShading(double width_m, std::span<const PlacedSurface> surfaces,
                            double clear_m) noexcept
     : width_m_(width_m), known_m_(clear_m), surfaces_(surfaces)
@@ -129,7 +130,7 @@ ForceShading::Felt ForceShading::at(const Place& place, double depth_m) const no
     return felt;
 }
 
-/// Adds one object's faces. In the object's frame, lengths in metres of the world.
+/// Adds the faces of one object, in the object's frame but in metres of the world.
 void ForceShading::add(const PlacedSurface& placed, const Place& place, double reach_m,
                        Sums& sums) const noexcept
 {
@@ -175,7 +176,7 @@ void ForceShading::add(const PlacedSurface& placed, const Place& place, double r
             continue;
         }
         const double area = std::min(1.0, 0.5 * length * scale * scale / bell_sq);
-        // 0 at a touched face, 1 at the end of the reach.
+        // Share of the reach: 0 at a touched face, 1 at the end of the reach.
         const double far = (distance_sq - place.radius_m * place.radius_m) / bell_sq;
         const Bell near = bell_of(far);
         const double share = rise_m / highest_m;

@@ -15,12 +15,12 @@ namespace tactus
 namespace
 {
 
-/// Causes in the scene and in timing, not in the device.
-constexpr ForceOff kOfTheScene = ForceOff::host | ForceOff::stall | ForceOff::jump |
+/// Causes in the scene or in timing, not in the device: they leave the compensation unchanged.
+constexpr ForceOff kOfTheScene = ForceOff::server | ForceOff::stall | ForceOff::jump |
                                  ForceOff::halted | ForceOff::over_constrained | ForceOff::clutch |
                                  ForceOff::starved | ForceOff::growth;
 
-/// The largest share of `wall` for which `load` + share x `wall` is no longer than `most`.
+/// Largest share of `wall`, 0 .. 1, for which `load` + share x `wall` is no longer than `most`.
 double share_beside(const Vec3& wall, const Vec3& load, double most) noexcept
 {
     if ((wall + load).norm() <= most)
@@ -53,7 +53,7 @@ void GravityCompensation::carry(ToolForce& force, const ToolPeriod& period) noex
     const bool is_trusted = has_sample && (force.causes | kOfTheScene) == kOfTheScene;
     if (is_trusted)
     {
-        turn_lever(period.hand_rotation, period.elapsed_s);
+        turn_lever(period.device_rotation, period.elapsed_s);
     }
     const double left = period.force_left < 1.0 ? gain_ * period.force_left : 1.0;
     gain_ = is_trusted ? std::min(gain_ + period.elapsed_s / kRiseTime_s, 1.0)
@@ -76,14 +76,14 @@ void GravityCompensation::make_room(ToolForce& force) const noexcept
     }
     if (load_.mass_kg > 0.0 && limits_.torque_max_nm > 0.0)
     {
-        share =
-            std::min(share, share_beside(force.turn.force_n, force.load_nm, limits_.torque_max_nm));
+        share = std::min(share,
+                         share_beside(force.torque.force_n, force.load_nm, limits_.torque_max_nm));
     }
     force.push.force_n *= share;
-    force.turn.force_n *= share;
+    force.torque.force_n *= share;
 }
 
-/// Rotates the lever at a limited rate; without a payload force at once.
+/// Rotates the lever to the tool's rotation, at a limited rate while the payload is compensated.
 void GravityCompensation::turn_lever(const Mat3& rotation, double elapsed_s) noexcept
 {
     const Vec3 way = rotation * load_.centre_m - lever_m_;

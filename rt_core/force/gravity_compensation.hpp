@@ -11,7 +11,7 @@
 namespace tactus
 {
 
-/// Limits of a device; 0: no torque.
+/// Largest force and torque of a device; a torque of 0: the device has none.
 struct WrenchLimits
 {
     double force_max_n{0.0};
@@ -19,34 +19,33 @@ struct WrenchLimits
 };
 
 /// Compensates the weight of a device's payload, so that the user does not feel it. The
-/// compensation is no force of the model: it bypasses the conditioner, which is for walls, and the
-/// ForceFader, whose fading would drop the payload if data is late.
+/// compensation bypasses ForceConditioner, which is for walls, and ForceFader, which would drop the
+/// payload if data is late.
 ///
 ///     load = gain x weight, upwards;  its torque = lever x load
 ///
-/// The gain has its own ramp, down in kFadeTime_s and up in kRiseTime_s. It falls for every cause
-/// in the device: gone, let go, cut off, garbage, stale, too fast, end of the run. Causes in the
-/// scene alone (halted, over-constrained, jump, host, stall, clutch, starved, growth) don't change
-/// it. The lever follows the tool's rotation only without such a cause, and no faster than a user
-/// can rotate (kRotationMax_rad_per_s). So no sample changes the force's length or direction,
-/// raises the torque above weight x lever, or makes it jump.
+/// The gain falls in kFadeTime_s and rises in kRiseTime_s. It falls for every cause in the device:
+/// gone, let go, cut off, garbage, stale, too fast, end of the run. Causes in the scene (halted,
+/// over-constrained, jump, server, stall, clutch, starved, growth) don't change it. The lever
+/// follows the tool's rotation while no cause is in the device, and no faster than
+/// kRotationMax_rad_per_s. So no sample makes the payload's force or torque jump.
 ///
-/// The payload's force is sent whole; if both together exceed the device's largest force or torque,
-/// the other one is shortened, force and torque by one gain.
+/// The payload's force is sent whole. If the total exceeds the device's largest force or torque,
+/// the other force and torque are shortened by one gain.
 ///
 /// Haptic thread, once a frame, after the ForceFader. About 50 ns.
 class GravityCompensation
 {
 public:
-    /// - Mass not negative; weight and torque at most the limits, except with a torque limit of 0:
-    /// such a device gets the force alone.
+    /// - The mass is not negative; weight and torque are at most the limits (asserted). With a
+    /// torque limit of 0 the payload's torque is not compensated.
     GravityCompensation(const ToolLoad& load, const WrenchLimits& limits) noexcept;
 
-    /// Sets the payload's part of `force`, which the ForceFader has passed, and shortens the rest
-    /// accordingly. Uses the device's rotation in `period`, only while it is trusted.
+    /// Sets the payload's part of `force`, a result of ForceFader, and shortens the rest to the
+    /// device's limits. Uses the device's rotation in `period` while the sample is trusted.
     void carry(ToolForce& force, const ToolPeriod& period) noexcept TACTUS_NONBLOCKING;
 
-    /// Shortens the rest again, without changing the payload's part.
+    /// Shortens push and torque again to what the payload's part leaves of the device's limits.
     void make_room(ToolForce& force) const noexcept TACTUS_NONBLOCKING;
 
     /// Share of the payload that is compensated, 0 .. 1.
@@ -58,7 +57,8 @@ private:
     ToolLoad load_;
     WrenchLimits limits_;
     double gain_{0.0};
-    Vec3 lever_m_{0.0, 0.0, 0.0}; ///< Device's position to the centre, in the world.
+    /// Vector from the device's position to the centre of mass, in the world.
+    Vec3 lever_m_{0.0, 0.0, 0.0};
 };
 
 } // namespace tactus

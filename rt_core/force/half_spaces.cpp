@@ -16,19 +16,20 @@ namespace tactus
 namespace
 {
 
-/// The planes that hold the motion now: independent normals as Q x R, Q orthonormal and R upper
+/// Planes that hold the motion now: their normals, factored as Q x R with Q orthonormal and R upper
 /// triangular, and a multiplier for each.
 template <int N>
 class HoldingPlanes
 {
 public:
-    /// A normal, split by the holding ones.
+    /// A further normal, split into a part along the holding normals and a part across them.
     struct Split
     {
-        Motion<N> along{Motion<N>::Zero()};  ///< Coefficients of Q's columns.
-        Motion<N> across{Motion<N>::Zero()}; ///< Remainder across all holding normals.
-        Motion<N> shares{Motion<N>::Zero()}; ///< Coefficients of the holding normals that give
-                                             ///< `along`.
+        /// Part in the span of the holding normals, as coefficients of Q's columns.
+        Motion<N> along{Motion<N>::Zero()};
+        Motion<N> across{Motion<N>::Zero()}; ///< Part perpendicular to all holding normals.
+        /// Coefficients of the holding normals of which `along` is the sum.
+        Motion<N> shares{Motion<N>::Zero()};
     };
 
     [[nodiscard]] int size() const noexcept { return size_; }
@@ -44,7 +45,7 @@ public:
     {
         Split result;
         result.across = normal;
-        // One pass leaves rounding residues; two suffice.
+        // One pass of Gram-Schmidt leaves rounding residues; two suffice.
         for (int pass = 0; pass < 2; ++pass)
         {
             for (int i = 0; i < size_; ++i)
@@ -96,7 +97,8 @@ public:
         }
     }
 
-    /// The motion nearest to `wanted` on all holding planes; sets its multipliers.
+    /// Returns the motion nearest to `wanted` that lies on all holding planes, and sets the
+    /// multipliers.
     [[nodiscard]] Motion<N> settle(std::span<const HalfSpace<N>> planes,
                                    const Motion<N>& wanted) noexcept
     {
@@ -160,7 +162,7 @@ public:
     {
     }
 
-    /// False if no motion is allowed.
+    /// Finds the motion; false if no motion is allowed by all planes.
     [[nodiscard]] bool try_find() noexcept
     {
         while (rounds_ > 0)
@@ -191,7 +193,7 @@ public:
     }
 
 private:
-    /// The most violated plane; the number of planes if none is violated.
+    /// Index of the plane that the motion violates most; the number of planes if none is violated.
     [[nodiscard]] std::uint32_t most_violated() noexcept
     {
         const double size = wanted_length_ + motion_.norm();
@@ -202,7 +204,7 @@ private:
             const double violation = planes_[i].offset - planes_[i].normal.dot(motion_);
             if (!(violation > 0.0))
             {
-                continue; // Most planes are not violated.
+                continue; // This is the usual case: most planes are not violated.
             }
             if ((measured_ >> i & 1U) == 0)
             {
@@ -224,20 +226,20 @@ private:
         return worst;
     }
 
-    /// Tolerance of a plane. A long search cycles within the slack that dependent normals leave; it
-    /// gets the wide one.
+    /// Tolerance of a plane's violation. A long search cycles within the slack of dependent
+    /// normals, and gets the wide tolerance.
     [[nodiscard]] double tolerance(std::uint32_t plane) const noexcept
     {
         const bool is_wide = rounds_ < kConstraintRounds / 2 || (let_pass_ >> plane & 1U) != 0;
         return is_wide ? kSqueezeTolerance : kPlaneTolerance;
     }
 
-    /// Pushes the motion out of a plane and drops planes that no longer hold it. If that is
-    /// impossible, nothing changes.
+    /// Pushes the motion out of a plane and drops planes that no longer hold it. False, with
+    /// nothing changed, if that is impossible.
     [[nodiscard]] bool try_hold(std::uint32_t plane) noexcept
     {
         const Motion<N>& normal = planes_[plane].normal;
-        std::optional<HoldingPlanes<N>> held_before; // State before the first drop.
+        std::optional<HoldingPlanes<N>> held_before; // State before the first plane is dropped.
         const Motion<N> motion_before = motion_;
         double multiplier = 0.0;
         while (rounds_ > 0)
@@ -253,7 +255,7 @@ private:
             const double step = std::min(whole, first.step);
             if (!(step < kInfinity))
             {
-                break; // Holding planes and this one exclude each other.
+                break; // The holding planes and this plane exclude each other.
             }
             multiplier += step;
             if (whole <= first.step)
@@ -282,8 +284,8 @@ private:
         return false;
     }
 
-    /// True if a plane conflicts with the holding ones by no more than dependent normals leave
-    /// open.
+    /// Gives a plane the wide tolerance if it conflicts with the holding planes only within the
+    /// slack of dependent normals. False if the conflict is larger.
     [[nodiscard]] bool try_let_pass(std::uint32_t plane) noexcept
     {
         const double violation = planes_[plane].offset - planes_[plane].normal.dot(motion_);
@@ -302,13 +304,14 @@ private:
         int index{0};
     };
 
-    /// The holding plane whose multiplier first reaches zero as the new one's grows.
+    /// Finds the holding plane whose multiplier reaches zero first while that of the new plane
+    /// grows.
     [[nodiscard]] LetGo first_to_let_go(const Motion<N>& shares, double length) const noexcept
     {
         LetGo first;
         for (int i = 0; i < holding_.size(); ++i)
         {
-            // A share that is rounding only must not be divided by.
+            // A share that is only rounding must not be a divisor.
             if (shares[i] * lengths_[holding_.plane(i)] <= kPlaneTolerance * length)
             {
                 continue;
@@ -327,7 +330,8 @@ private:
     Motion<N> motion_;
     HoldingPlanes<N> holding_;
     double wanted_length_;
-    // Norms of the violated planes' normals: zeros for all would cost more than a search.
+    // Norms of the normals of planes that were violated. They are set when needed: zeros for all
+    // would cost more than a search.
     std::array<double, kMaxHalfSpaces> lengths_;
     static_assert(kMaxHalfSpaces <= 64);
     std::uint64_t measured_{0}; ///< Planes whose norm is known, one bit each.

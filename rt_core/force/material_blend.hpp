@@ -10,9 +10,9 @@
 namespace tactus
 {
 
-/// Blends one tool's material at an object from the old to the new one, linearly within
-/// kMaterialBlend_s. So a wall's force changes by a small share of the difference per frame, and
-/// not at once. A texture of another length ends before the new one begins.
+/// Blend of an object's material, as one tool feels it, from the old to the new one, linear over
+/// kMaterialBlend_s. So the force changes by a small share of the difference per frame. If the
+/// texture's length changes, the old bumps vanish before the new ones grow.
 ///
 /// Haptic thread.
 class MaterialBlend
@@ -24,8 +24,8 @@ public:
     {
     }
 
-    /// One frame towards `wanted`; a wall is never felt stiffer than `tool_n_per_m`. True if the
-    /// felt material changed.
+    /// Moves the felt material by one frame of `elapsed_s` towards `wanted`; a wall is never felt
+    /// stiffer than `tool_n_per_m`. True if the felt material changed.
     [[nodiscard]] bool step(const Material& wanted, double tool_n_per_m,
                             double elapsed_s) noexcept TACTUS_NONBLOCKING
     {
@@ -48,7 +48,8 @@ public:
     [[nodiscard]] const Material& felt() const noexcept { return felt_; }
 
 private:
-    /// Same as std::lerp, which may differ between libraries. Infinite if both are.
+    /// Linear interpolation like std::lerp, whose result may differ between libraries. Infinite if
+    /// both ends are.
     [[nodiscard]] static double lerp(double from, double to, double share) noexcept
     {
         return from == to ? to : from + share * (to - from);

@@ -18,8 +18,8 @@ void SentForces::send(const Vec3& force_n) noexcept
     sent_[0] = {force_n, 0.0};
 }
 
-/// Mean over 0 .. elapsed, on a time line that starts when the newest force was sent. Each force is
-/// at the device from `begin` to `end`:
+/// Mean of the force at the device over 0 .. elapsed, on a time line in periods that starts when
+/// the newest force was sent. Each force is at the device from its `begin` to its `end`:
 ///
 ///     -- sent[2] --|-- sent[1] --|------- sent[0] -------
 ///         0 <- mean over --------+----------> elapsed
@@ -56,7 +56,7 @@ void PassivityObserver::observe(const Vec3& force_n, const Vec3& displacement_m,
 {
     TACTUS_ASSERT(elapsed_s > 0.0);
     const double work = force_n.dot(displacement_m);
-    // This bounds b v^2 over the time from below, for any motion (Cauchy's inequality).
+    // Lower bound on the integral of b v^2 over the time, for any motion (Cauchy's inequality).
     const double viscous_loss = damping_n_s_per_m_ * displacement_m.squaredNorm() / elapsed_s;
     work_j_ += work;
     observed_energy_j_ +=

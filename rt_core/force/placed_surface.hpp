@@ -12,22 +12,22 @@
 namespace tactus
 {
 
-/// One object's surface near a tool, as queried from the proxy, for the force stage.
+/// Surface of one object near a tool, as queried from the proxy, for the force stage.
 struct PlacedSurface
 {
     const ObjectPose* pose{nullptr};
     const LocalSurface* surface{nullptr};
     const Material* material{nullptr};
-    double quantum_m{0.0}; ///< Quantum of the model's coordinates, in its frame.
-    /// Range of the query round the tool's core, in the world.
+    double quantum_m{0.0}; ///< Quantum of the model's coordinates, in metres of the model's frame.
+    /// Range of the query round the tool's core, in metres of the world.
     double reach_m{kInfinity};
-    /// Proven distance of the core, in the world; 0 if unknown.
+    /// Lower bound on the core's distance from the surface, in metres of the world; 0 if unknown.
     double lower_m{0.0};
-    /// World frame; null unless the tool is rigid.
+    /// Possible contacts in the world frame; null unless the tool is rigid.
     const TouchReport* touches{nullptr};
-    double upper_m{kInfinity}; ///< Upper bound of the core's distance from the surface, in the
-                               ///< world.
-    std::uint32_t object{0};   ///< Number of the object in the scene.
+    /// Upper bound on the core's distance from the surface, in metres of the world.
+    double upper_m{kInfinity};
+    std::uint32_t object{0}; ///< Number of the object in the scene.
     ProxyMemory* memory{nullptr};
     const Kernels* kernels{&portable_kernels()};
 };

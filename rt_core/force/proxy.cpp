@@ -14,17 +14,20 @@ namespace tactus
 namespace
 {
 
-/// Share of a press that may turn into a displacement along a curved surface within a frame.
+/// Share of the goal's depth that counts as possible displacement along a curved surface in a
+/// frame.
 constexpr double kDipShare = 0.1;
-/// Displacement by the last list, as a share of the radius, above which another list is requested.
+/// Displacement with the last list, as a share of the radius, above which a further list is
+/// requested.
 constexpr double kWorthAList = 0.05;
-/// Gap within which a moving proxy feels the surface, as a share of the radius.
+/// Gap between sphere and surface within which a moving proxy has contact, as a share of the
+/// radius.
 constexpr double kNearlyTouching = 0.1;
-/// Force below which a push has no direction, for example with a stiffness of zero: the last
-/// contact's direction is kept.
+/// Force below which a push has no direction (for example with a stiffness of 0) and the last
+/// contact's normal is kept.
 constexpr double kLeastPush_n = 1e-150;
 
-/// The planes of one step, and their faces.
+/// Planes of one step, and the face of each.
 struct StepPlanes
 {
     StaticVector<HalfSpace<3>, kMaxHalfSpaces> planes;
@@ -39,7 +42,7 @@ struct StepPlanes
         faces.push_back(face);
         planes.push_back(plane);
     }
-    /// Keeps only the planes that hold.
+    /// Keeps only the planes that hold the motion `found`.
     void compact(const NearestMotion<3>& found) noexcept
     {
         const StepPlanes before = *this;
@@ -50,7 +53,8 @@ struct StepPlanes
             add(before.faces[i], before.planes[i]);
         }
     }
-    /// The shortest motion out of objects that moved into the tool by more than `least`.
+    /// Shortest motion out of the planes, if the tool is behind one of them by more than `least`,
+    /// after objects moved into it; otherwise zero.
     [[nodiscard]] Vec3 way_out(double least) const noexcept
     {
         const bool is_inside = std::ranges::any_of(planes.view(), [least](const HalfSpace<3>& plane)
@@ -60,23 +64,24 @@ struct StepPlanes
     }
 };
 
-/// nearest_motion() with its work counted: a search passes through its planes about eight times.
+/// Calls nearest_motion() and counts its work: a search passes through its planes about eight
+/// times.
 NearestMotion<3> search(Vicinity& near, const StepPlanes& step, const Vec3& wanted) noexcept
 {
     near.use(1 + static_cast<std::uint32_t>(step.planes.size()) / 8);
     return nearest_motion<3>(step.planes.view(), wanted);
 }
 
-/// The motion, shortened to `room`.
+/// Returns the motion, shortened to a length of `room`.
 Vec3 within(const Vec3& motion, double room) noexcept
 {
     const double length = motion.norm();
     return length > room ? Vec3(motion * (room / length)) : motion;
 }
 
-/// The motion nearest to `wanted` that enters no triangle, shortened to `room`. If the search is
-/// cut, the part of the motion that is proven to be free. `found` is the motion that the planes of
-/// `step` allow; `step` receives the entered faces. Motions beyond `room` are not tested.
+/// Returns the motion nearest to `wanted` that enters no triangle, shortened to `room`. `found` is
+/// the motion that the planes of `step` allow; `step` receives the faces that it would enter. If
+/// the search is cut, returns the part of the motion that is proven to be free.
 NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double radius, double room,
                                      StepPlanes& step, NearestMotion<3> found) noexcept
 {
@@ -108,7 +113,7 @@ NearestMotion<3> nearest_free_motion(Vicinity& near, const Vec3& wanted, double 
     return found;
 }
 
-/// The component of a vector along all holding planes, which are independent.
+/// Component of a vector along all holding planes; their normals are independent.
 Vec3 along_all(const Vec3& vector, const StepPlanes& planes,
                std::span<const std::uint32_t> held_by) noexcept
 {
@@ -125,14 +130,14 @@ Vec3 along_all(const Vec3& vector, const StepPlanes& planes,
     return vector - normal * normal.dot(vector);
 }
 
-/// True if the material resists motion along it.
+/// True if the material resists motion along its surface.
 bool rubs(const Material& material) noexcept
 {
     return material.static_friction > 0.0 || material.viscosity_n_s_per_m > 0.0 ||
            material.texture_height_m > 0.0;
 }
 
-/// Radius round the tool's centre within which the surface is known, in the world.
+/// Distance from the tool's centre within which the surface is known, in metres of the world.
 double known(const PlacedSurface& placed) noexcept
 {
     const DistanceAnswer& answer = placed.surface->answer;
@@ -141,14 +146,14 @@ double known(const PlacedSurface& placed) noexcept
 
 } // namespace
 
-/// Contacts at one place, before faces that a motion would enter are searched.
+/// Contacts of the proxy at one place, before it is checked which further faces a motion would
+/// enter.
 struct Proxy::Touch
 {
     Hold hold;
-    StepPlanes planes;        ///< Planes of the contacts.
-    Vec3 wanted;              ///< Wanted displacement: to the device, or to its goal raised by
-                              ///< force shading.
-    NearestMotion<3> held;    ///< Part of it that the planes allow.
+    StepPlanes planes; ///< Planes of the contacts.
+    Vec3 wanted; ///< Wanted displacement: to the goal, or to the goal as raised by force shading.
+    NearestMotion<3> held;    ///< Part of `wanted` that the planes allow.
     Vec3 kept{0.0, 0.0, 0.0}; ///< Part of the slip that friction and textures hold back.
 };
 
@@ -230,7 +235,8 @@ void Proxy::begin_frame() noexcept
     path_.push_back(position_);
 }
 
-/// True if another list would help. A proxy that lacks data would end at the same place.
+/// True if a further list of triangles would help. Without data the proxy would end at the same
+/// place.
 bool Proxy::is_worth_going_on(Motion motion, std::span<const PlacedSurface> surfaces) const noexcept
 {
     const bool is_cut =
@@ -244,7 +250,7 @@ bool Proxy::is_worth_going_on(Motion motion, std::span<const PlacedSurface> surf
 void Proxy::see(const ProxyGoal& goal) noexcept
 {
     rotation_ = goal.rotation;
-    is_on_ = false; // The last frame may have had no budget left for another list.
+    is_on_ = false; // The last frame may have ended without budget for a further list.
     if (goal.change == GoalChange::first)
     {
         position_ = goal.position_m;
@@ -262,7 +268,7 @@ double Proxy::way_to_m(const ProxyGoal& goal) const noexcept
     return (way + inward * normal_).norm() + kDipShare * inward;
 }
 
-/// The tool's radius. For a point it is a multiple of the coarsest model's quantum.
+/// Radius of the tool, or, if larger, kPointSkin quanta of the coarsest model.
 double Proxy::find_radius(std::span<const PlacedSurface> surfaces) const noexcept
 {
     double skin = 0.0;
@@ -273,7 +279,7 @@ double Proxy::find_radius(std::span<const PlacedSurface> surfaces) const noexcep
     return std::max(spec_.radius_m, skin);
 }
 
-/// Distance that the proxy may move within the proven space; <= 0: none.
+/// Distance that the proxy may move within the proven space; 0 or less: none.
 double Proxy::free_travel(std::span<const PlacedSurface> surfaces, double clear_m) const noexcept
 {
     double travel = clear_m - radius_;
@@ -284,7 +290,7 @@ double Proxy::free_travel(std::span<const PlacedSurface> surfaces, double clear_
     return travel;
 }
 
-/// True if less is known at the proxy's end than was requested.
+/// True if a surface is known less far than requested, and ends the proxy's travel.
 bool Proxy::is_short_of(std::span<const PlacedSurface> surfaces, double travel) const noexcept
 {
     return std::ranges::any_of(surfaces,
@@ -296,7 +302,8 @@ bool Proxy::is_short_of(std::span<const PlacedSurface> surfaces, double travel) 
                                });
 }
 
-/// Moves straight on while nothing blocks it, then among the triangles in reach.
+/// Moves the proxy: straight while no surface is near enough to block it, then among the triangles
+/// in reach.
 Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
                             std::span<const PlacedSurface> surfaces) noexcept
 {
@@ -350,7 +357,7 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
         }
         ++steps_;
         near.stand_at(position_ - anchor_, normal_);
-        // Unlisted and uncertified triangles are at least this far away.
+        // `room` is the distance that is free of unlisted and uncertified triangles.
         const double moved = (position_ - anchor_).norm();
         const double room = std::min(near.reach_m() - radius_, travel) - moved;
         hold_ = hold_at(near, surfaces, goal - position_, room);
@@ -415,7 +422,7 @@ Proxy::Hold Proxy::hold_at(Vicinity& near, std::span<const PlacedSurface> surfac
     return hold;
 }
 
-/// Contacts of the proxy at its place, within the gap, with their push and friction.
+/// Finds the contacts of the proxy at its place, within `gap_m`, with their push and friction.
 Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfaces,
                             const Vec3& wanted, double gap_m) noexcept
 {
@@ -467,7 +474,8 @@ Proxy::Touch Proxy::feel_at(Vicinity& near, std::span<const PlacedSurface> surfa
     return touch;
 }
 
-/// Raises the goal towards the surface, along the shaded normal, for the planes to hold.
+/// Raises the goal towards the surface, along the shaded normal; the planes then hold the raised
+/// goal.
 ForceShading::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
                                         const Vec3& pressed) const noexcept
 {
@@ -484,14 +492,14 @@ ForceShading::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
     const NearestMotion<3> held = search(near, touch.planes, raised);
     if (held.held_by.empty())
     {
-        return {}; // No plane would hold the raised goal, so the original one is kept.
+        return {}; // The raised goal is in front of all planes, so the original goal is kept.
     }
     touch.wanted = raised;
     touch.held = held;
     return felt;
 }
 
-/// Returns the push and energy that the raise took, along the shaded normal.
+/// Adds to the hold the push and energy that raising the goal took away.
 void Proxy::press_smoothly(Hold& hold, const ForceShading::Felt& felt, const Vec3& pressed) noexcept
 {
     const double depth_m = pressed.norm();
@@ -503,7 +511,8 @@ void Proxy::press_smoothly(Hold& hold, const ForceShading::Felt& felt, const Vec
     hold.is_smooth = true;
 }
 
-/// Adds a touching plane. `depth` is the vector from the goal to the plane, along its normal.
+/// Adds a touching plane to the hold. `depth` is the vector from the goal to the plane, along its
+/// normal.
 void Proxy::press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) const noexcept
 {
     const Material& material = *placed.material;
@@ -525,7 +534,8 @@ void Proxy::press(Hold& hold, const PlacedSurface& placed, const Vec3& depth) co
     hold.velocity += placed.memory->velocity_m_per_s * length;
 }
 
-/// Adds the texture of a touching surface, by its share of `pressed`, the whole pressure.
+/// Adds the texture of a touching surface to the hold. `pressed` is the vector of the whole depth,
+/// `share` the part of this surface.
 void Proxy::press_into_texture(Hold& hold, const PlacedSurface& placed, const Vec3& pressed,
                                double share) const noexcept
 {
@@ -539,8 +549,7 @@ void Proxy::press_into_texture(Hold& hold, const PlacedSurface& placed, const Ve
     }
 }
 
-/// Moves straight to the contact, where friction begins: up to the first entered face, each
-/// approached in steps.
+/// Motion straight to the contact, at which friction begins: up to the first face that it enters.
 Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion) const noexcept
 {
     StaticVector<std::uint32_t, kStepRounds> passed;
@@ -556,17 +565,18 @@ Vec3 Proxy::go_to_contact(Vicinity& near, const Vec3& wanted, const Vec3& motion
     }
     if (near.is_spent())
     {
-        return motion; // The first entered face is unknown: the motion proven without friction.
+        // The first entered face is unknown, so the motion proven without friction is kept.
+        return motion;
     }
     const Vec3 straight = wanted * share;
     return !passed.empty() && straight.norm() > kLeastStep * radius_ ? straight : motion;
 }
 
 /// Coulomb's cone: the tool sticks while its pull, `slip` less the textures' displacement, is
-/// within the static cone. It then slides until the pull is within the dynamic cone. A sliding
-/// viscous surface holds back viscosity x displacement / time, over the displacement in contact in
-/// this frame and now. That is an implicit damper, which takes only its part of the motion. Returns
-/// the part of the slip that all of them hold back.
+/// within the static cone. Otherwise it slides until the pull is within the dynamic cone. A viscous
+/// surface resists sliding as an implicit damper, by viscosity x displacement / time; the
+/// displacement is that in contact in this frame. Returns the part of the slip that these hold
+/// back.
 Vec3 Proxy::rub(Hold& hold, const Vec3& slip) noexcept
 {
     const Vec3 pull = slip - hold.bump_m;
@@ -636,14 +646,14 @@ void Proxy::forget(std::uint32_t object) noexcept
     hold_.object = hold_.object == object ? kNoObject : hold_.object;
 }
 
-/// True if the proxy could be on another side of a surface after moving to `target` while the
-/// objects move.
+/// True if the proxy could change the side of a surface by moving to `target` while the objects
+/// move.
 bool Proxy::is_overrun(const Vec3& target, std::span<const NearObject> objects) const noexcept
 {
     const double goes_m = (target - position_).norm();
     if (goes_m > 0.0 && goes_m >= clear_m_ - went_m())
     {
-        return true; // Beyond the clearance from all other objects.
+        return true; // The motion exceeds the clearance from all objects without a surface here.
     }
     return std::ranges::any_of(
         objects,
@@ -657,7 +667,8 @@ bool Proxy::is_overrun(const Vec3& target, std::span<const NearObject> objects) 
         });
 }
 
-/// Force of the spring and of the damping across the surface; together they never pull.
+/// Force of the spring, friction, and damping across the surface; the damping never turns a push
+/// into a pull.
 Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
 {
     const double inward = (hold_.velocity / hold_.depth_m - goal.velocity_m_per_s).dot(normal_);
@@ -666,18 +677,18 @@ Vec3 Proxy::force(const ProxyGoal& goal) const noexcept
     return clamped(hold_.push_n + damped * normal_ + hold_.drag_n);
 }
 
-/// The force, with a limited catch-up. Device displacement across the object may change a spring's
-/// force by stiffness x displacement.
+/// Returns the force with a limited catch-up. Motion of the device relative to the object may
+/// change the force by stiffness x displacement.
 Vec3 Proxy::caught_up(const ProxyGoal& goal) noexcept
 {
     const Vec3 velocity = goal.velocity_m_per_s - hold_.velocity / hold_.depth_m;
-    const double by_hand_n = hold_.stiffness / hold_.depth_m * velocity.norm() * goal.elapsed_s;
+    const double by_device_n = hold_.stiffness / hold_.depth_m * velocity.norm() * goal.elapsed_s;
     const double rate = std::min(kCatchUp_n_per_s, kCatchUpShare_per_s * spec_.force_max_n);
     return catch_up_.next(
-        {force(goal), by_hand_n, spec_.force_max_n, rate, goal.elapsed_s, has_waited_});
+        {force(goal), by_device_n, spec_.force_max_n, rate, goal.elapsed_s, has_waited_});
 }
 
-/// Force of a held proxy: along the last normal, never pulling.
+/// Force of a halted or over-constrained proxy: along the last normal, never pulling.
 Vec3 Proxy::held_force(const Vec3& goal) const noexcept
 {
     const double push = spec_.stiffness_n_per_m * (position_ - goal).dot(normal_);

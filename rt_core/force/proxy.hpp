@@ -21,35 +21,34 @@
 namespace tactus
 {
 
-/// The virtual proxy of a tool whose core is a point (god-object: Zilles and Salisbury 1995;
-/// virtual proxy: Ruspini, Kolarov and Khatib 1997; friction cone: Harwin and Melder 2002).
+/// Virtual proxy of a tool whose core is a point (god-object: Zilles and Salisbury 1995; virtual
+/// proxy: Ruspini, Kolarov and Khatib 1997; friction cone: Harwin and Melder 2002).
 ///
-/// The proxy is the tool's centre that the surfaces allow: the reachable place nearest to the goal
-/// without entering a triangle, as far as friction permits. It moves in straight steps. Each step
-/// is the nearest motion to the goal that stays on the free side of a plane for every triangle
-/// near. So all planes that hold it, up to three, do so at once. The planes are found again at its
-/// end. No step enters a triangle, however fast or deep the goal is. Steps stay where the surfaces
-/// are certified: within (certified radius - tool radius), or (L - tool radius), of the place of
-/// their query.
+/// The proxy is the reachable place nearest to the goal at which the tool's sphere enters no
+/// triangle, as far as friction permits. It moves in straight steps. Each step is the motion
+/// nearest to the goal on the free side of one plane for each near triangle; up to three planes
+/// hold it at once. The planes are computed again at the end of each step. So no step enters a
+/// triangle, however fast or deep the goal is. Steps stay where the surfaces are certified: within
+/// (certified radius - tool radius), or (L - tool radius), of the place of the query.
 ///
-/// The force is the spring between goal and proxy, with the softer stiffness of tool and object;
-/// never a penalty on a distance. Friction, viscosity, a texture (texture.hpp) and force shading
-/// (force_shading.hpp) determine where along the surface the proxy comes to rest. Their only effect
-/// is to stretch that spring. Without a certified surface the proxy is halted. If objects leave no
-/// free motion, it is over-constrained. It reports both: ForceFader then fades the force, which is
-/// along the last normal and never pulls. After a frame in which the proxy waited for data the
-/// force catches up by kCatchUp_n_per_s, besides the device's motion.
+/// The force is that of the spring between goal and proxy, with the lower stiffness of tool and
+/// object. Friction, viscosity, texture (texture.hpp) and force shading (force_shading.hpp) only
+/// move the proxy's place of rest along the surface, which stretches that spring. Without a
+/// certified surface the proxy is halted; if objects leave no free motion, it is over-constrained.
+/// ForceFader then fades the force, which is along the last normal and never pulls. After a frame
+/// in which the proxy waited for data, the force catches up by kCatchUp_n_per_s, besides the
+/// device's motion.
 ///
-/// A fast device needs more triangles than fit in a list. The proxy goes as far as the listed ones
-/// prove, then on from there with another list in the same frame, kListsPerFrame at most.
+/// A list may not hold all triangles in reach. The proxy then moves as far as the list proves, and
+/// continues in the same frame with a new list, kListsPerFrame at most.
 ///
-/// Its checks are bounded by Budgets::planes. If they are used up it stops, `under_way`, and
-/// continues in the next frame.
+/// Budgets::planes bounds the checks. If they are used up, the proxy stops, reports `under_way`,
+/// and continues in the next frame.
 ///
-/// A tool without a radius is a sphere of kPointSkin quanta.
+/// A tool without a radius counts as a sphere with a radius of kPointSkin quanta.
 ///
-/// Haptic thread. Cost: usually one list of the triangles in reach per frame, 2 to 6 steps and
-/// kProxySteps at most, each of a few passes over the list.
+/// Haptic thread. Cost: usually one list of triangles per frame and 2 to 6 steps, kProxySteps at
+/// most. Each step passes over the list a few times.
 class Proxy
 {
 public:
@@ -70,73 +69,74 @@ public:
     {
         return spec_.shading_m > 0.0 ? ForceShading::reach_beyond_m(radius_, spec_.shading_m) : 0.0;
     }
-    /// Distance to the goal along the surface. The normal component of a pressed contact does not
-    /// count.
+    /// Distance from the proxy to the goal, in contact along the surface only.
     [[nodiscard]] double way_to_m(const ProxyGoal& goal) const noexcept TACTUS_NONBLOCKING;
-    /// Corners of its path in this frame, including both ends: straight lines.
+    /// Corners of the proxy's path in this frame, which consists of straight lines; both ends are
+    /// included.
     [[nodiscard]] std::span<const Vec3> path_m() const noexcept { return path_.view(); }
     [[nodiscard]] bool is_in_contact() const noexcept { return in_contact_; }
     /// True if more triangles touched in the last frame than planes fit: the force may lack some.
     [[nodiscard]] bool exceeds_capacity() const noexcept { return exceeds_capacity_; }
 
-    /// Moves the proxy with the objects: along with the one that it touches, or that would pass
-    /// over it; otherwise it stays. If one of them passes over it in each case, it is
-    /// over-constrained. Once a frame, before the surfaces are queried.
+    /// Moves the proxy with the object that it touches, or else with one that would pass over it.
+    /// If an object passes over it in each case, it is over-constrained. Once a frame, before the
+    /// surfaces are queried.
     void carry(std::span<const NearObject> objects, double elapsed_s) noexcept TACTUS_NONBLOCKING;
-    /// Drops an object that was replaced or removed.
+    /// Forgets an object that was replaced or removed.
     void forget(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
-    /// Moves towards the goal and returns the force. `surfaces` were queried at position_m(); all
-    /// others are at least `clear_m` away there. `planes` are the rest of Budgets::planes: with
-    /// none left the proxy stops, with the contacts at its place.
+    /// Moves the proxy towards the goal and returns the force. `surfaces` were queried at
+    /// position_m(); all others are at least `clear_m` away there. `planes` is the rest of
+    /// Budgets::planes; with 0 the proxy stays, with the contacts there.
     [[nodiscard]] ToolOutput
     respond(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces, double clear_m,
             std::uint32_t planes = Vicinity::kUnlimited) noexcept TACTUS_NONBLOCKING;
-    /// Rest of `planes` after respond().
+    /// Checks left of `planes` after respond().
     [[nodiscard]] std::uint32_t planes_left() const noexcept { return planes_left_; }
-    /// True if it reached the end of a list that capacity or budget had truncated: from its new
-    /// place, with surfaces queried there, it would move on.
+    /// True if the proxy reached the end of a list that capacity or budget truncated: with surfaces
+    /// queried at its new place it would move on.
     [[nodiscard]] bool goes_on() const noexcept { return goes_on_; }
-    /// Distance of the last respond(), at most.
+    /// Bound on the displacement of the proxy in the last respond().
     [[nodiscard]] double went_m() const noexcept { return (position_ - anchor_).norm(); }
-    /// Makes the next respond() a continuation of the same frame, whose force replaces the last
-    /// one. A halted continuation changes nothing.
+    /// Makes the next respond() continue the same frame; its force replaces the last one. A halted
+    /// continuation changes nothing.
     void go_on() noexcept { is_on_ = true; }
 
 private:
     enum class Motion : std::uint8_t
     {
-        at_rest, ///< Reached the goal, or held by the surface.
-        /// More triangles are near than fit: unlisted ones may be here.
+        at_rest, ///< The proxy is at the goal, or held by the surface.
+        /// Unlisted triangles may be here, as more are near than fit.
         ran_out,
-        data_limited, ///< The certified sphere ends here.
+        data_limited, ///< The sphere in which the surface is certified ends here.
         out_of_steps,
         out_of_planes,    ///< No checks are left.
-        over_constrained, ///< No place near is free.
+        over_constrained, ///< No place near the proxy is free of surfaces.
     };
 
-    /// Effect of the surfaces at one place. Sums are over the touching planes, each weighted by the
-    /// goal's depth behind it.
+    /// Effect of the surfaces at one place of the proxy. Sums are over the touching planes, each
+    /// weighted by the depth of the goal behind it, in metres.
     struct Hold
     {
         Vec3 motion{0.0, 0.0, 0.0}; ///< Motion that planes and friction allow.
         Vec3 push_n{0.0, 0.0, 0.0}; ///< Force of the planes.
         Vec3 drag_n{0.0, 0.0, 0.0}; ///< Force of friction.
         double depth_m{0.0};
-        double stiffness{0.0}; ///< Weighted sum, N/m x m, like those below.
+        /// Weighted sum of stiffnesses, N/m x m; damping and viscosity below likewise.
+        double stiffness{0.0};
         double static_m{0.0};
         double dynamic_m{0.0};
         double damping{0.0};
         double viscosity{0.0};
-        Vec3 bump_m{0.0, 0.0, 0.0};   ///< Proxy displacement by textures.
-        double stiffening{0.0};       ///< Sum for textures and force shading.
-        Vec3 velocity{0.0, 0.0, 0.0}; ///< Velocity of the objects.
+        Vec3 bump_m{0.0, 0.0, 0.0}; ///< Displacement of the proxy by textures.
+        double stiffening{0.0}; ///< Weighted sum of the stiffening by textures and force shading.
+        Vec3 velocity{0.0, 0.0, 0.0}; ///< Weighted sum of the velocities of the objects.
         double deepest_m{0.0};
         std::uint32_t object{kNoObject}; ///< Object of the deepest plane.
         bool touches{false};
-        bool rubs{false};        ///< Friction or damping acts along the surface.
-        bool has_texture{false}; ///< A pressing surface has a texture.
-        bool is_smooth{false};   ///< Held with force shading.
+        bool rubs{false}; ///< True if friction, viscosity or a texture acts along the surface.
+        bool has_texture{false}; ///< True if a pressing surface has a texture.
+        bool is_smooth{false};   ///< True if force shading raised the goal.
         bool is_over_constrained{false};
     };
 
@@ -180,28 +180,29 @@ private:
     ToolSpec spec_;
     double radius_{0.0};
     Vec3 position_{0.0, 0.0, 0.0};
-    Mat3 rotation_{Mat3::Identity()};        ///< Rotation of the goal.
-    Vec3 anchor_{0.0, 0.0, 0.0};             ///< Place of the last query.
-    double clear_m_{kInfinity};              ///< Clearance there, of all others.
-    Vec3 normal_{0.0, 0.0, 1.0};             ///< Normal of the last contact.
-    ForceShading normals_;                   ///< Valid while the proxy moves.
-    StaticVector<std::uint32_t, 3> held_by_; ///< Faces at the last stop of this frame.
+    Mat3 rotation_{Mat3::Identity()}; ///< Rotation of the goal.
+    Vec3 anchor_{0.0, 0.0, 0.0};      ///< Place of the proxy at the last query.
+    double clear_m_{kInfinity};       ///< Clearance at anchor_ from all objects without a surface.
+    Vec3 normal_{0.0, 0.0, 1.0};      ///< Normal of the last contact.
+    ForceShading normals_;            ///< Force shading of this frame; valid while the proxy moves.
+    /// Faces that hold the proxy at its last stop in this frame.
+    StaticVector<std::uint32_t, 3> held_by_;
     Hold hold_;
     CatchUp catch_up_;
-    CatchUp catch_up_before_; ///< State at the frame's beginning.
-    bool has_waited_{false};  ///< waits_ at the frame's beginning.
-    /// Halted, over-constrained, data-limited or cut short in the last frame.
+    CatchUp catch_up_before_; ///< State of catch_up_ at the frame's beginning.
+    bool has_waited_{false};  ///< Value of waits_ at the frame's beginning.
+    /// True if the proxy was halted, over-constrained, data-limited or cut short in the last frame.
     bool waits_{false};
-    bool is_on_{false}; ///< Continues in the same frame.
+    bool is_on_{false}; ///< True if the next respond() continues the same frame.
     bool goes_on_{false};
-    std::uint32_t lists_{0}; ///< Number in this frame.
-    std::uint32_t steps_{0}; ///< Number in this frame.
+    std::uint32_t lists_{0}; ///< Lists used in this frame.
+    std::uint32_t steps_{0}; ///< Steps made in this frame.
     std::uint32_t planes_left_{0};
     bool in_contact_{false};
-    bool slides_{false};    ///< True if the dynamic cone holds from the last frame on.
+    bool slides_{false};    ///< True if the proxy slides, so that the dynamic cone holds.
     bool has_slid_{false};  ///< True if the proxy slid in this frame.
     double rubbed_m_{0.0};  ///< Displacement in contact in this frame.
-    double elapsed_s_{0.0}; ///< Duration of the frame.
+    double elapsed_s_{0.0}; ///< Duration of the frame in seconds.
     bool was_overrun_{false};
     bool exceeds_capacity_{false};
     StaticVector<Vec3, kProxySteps + kListsPerFrame + 1> path_;

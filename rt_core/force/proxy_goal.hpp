@@ -9,14 +9,14 @@
 namespace tactus
 {
 
-/// Origin of a tool's goal since the last frame.
+/// Change of a tool's goal since the last frame.
 enum class GoalChange : std::uint8_t
 {
     none,  ///< No sample was taken: the goal is the last one.
-    first, ///< The first sample.
+    first, ///< The goal is that of the first sample.
     /// The goal is farther from the last one than a user can move.
     jump,
-    motion, ///< The device moved.
+    motion, ///< The device moved the goal.
 };
 
 /// Place of the tool at the device pose. World frame, SI.
@@ -27,7 +27,7 @@ struct ProxyGoal
     double elapsed_s{0.0};           ///< Time since the last frame.
     Mat3 rotation{Mat3::Identity()}; ///< Rotation of the tool's frame; orthonormal to rounding.
     GoalChange change{GoalChange::none};
-    Vec3 spin_rad_per_s{0.0, 0.0, 0.0}; ///< Angular velocity.
+    Vec3 spin_rad_per_s{0.0, 0.0, 0.0}; ///< Angular velocity of the goal, about the world's axes.
 
     [[nodiscard]] bool operator==(const ProxyGoal&) const = default;
 };

@@ -15,40 +15,40 @@ namespace tactus
 namespace
 {
 
-/// Slide, as a share of the radius, up to which a hold is kept. A tool at rest drops it if a touch
-/// is measured as near: with old planes it would rest beside an edge that it should slide off. A
-/// tool that still rocks needs both ends of its support.
+/// Slide of the tool at a hold, as a share of the radius, up to which the hold is kept. A tool at
+/// rest drops a hold as near as this to a measured contact, as old planes could keep it beside an
+/// edge that it should slide off. A rocking tool keeps both, the ends of its support.
 constexpr double kHoldSlide = 0.05;
-/// Cosine between normals above which holds count as one.
+/// Cosine between normals above which two holds may count as one.
 constexpr double kSameDirection = 0.999;
-/// Share of the radius below which friction holds a motion: 0.2 um of 2 mm.
+/// Motion, as a share of the radius, below which a sticking tool stays: 0.2 um for 2 mm.
 constexpr double kLeastMotion = 1e-4;
 
-/// Largest viscous displacement per stretch: more is as good as sticking, and would leave the
-/// numeric range.
+/// Largest viscous displacement per stretch: more is like sticking and would exceed the numeric
+/// range.
 constexpr double kMostViscous = 1e6;
 
-/// Step length, as a share of the radius, after which other planes hold.
+/// Length of a step, as a share of the radius, after which other planes may hold.
 constexpr double kLongMotion = 0.25;
 
-/// Least expected displacement of a resting tool, as a share of the radius.
+/// Least displacement expected of a tool in contact, as a share of the radius.
 constexpr double kLeastWay = 0.5;
 
 /// Limits of the arm, as shares of the tool's size.
 constexpr double kLeastArm = 1e-3;
 constexpr double kMostArm = 1e6;
-/// Assumed size of a point core without a radius.
+/// Least radius of a tool, for a point core without a radius.
 constexpr double kLeastSkin_m = 1e-9;
 
-/// Share of the vector that is no longer than `most`.
+/// Share of the vector, 0 .. 1, that is no longer than `most`.
 double share_within(const Vec3& vector, double most) noexcept
 {
     const double length = vector.norm();
     return length > most ? most / length : 1.0;
 }
 
-/// True if the query found a contact there, to within `near_m`.
-bool is_measured(const BodyTouch& touch, std::span<const Contact> contacts, double near_m) noexcept
+/// True if the query found a contact within `near_m` of the touch.
+bool is_measured(const RigidTouch& touch, std::span<const Contact> contacts, double near_m) noexcept
 {
     return std::ranges::any_of(
         contacts,
@@ -64,21 +64,23 @@ bool turns(const ToolSpec& spec) noexcept
     return !spec.query_only && !std::holds_alternative<PointCore>(spec.core);
 }
 
-/// Radius or skin for sliding, never zero.
+/// Radius of the tool, or its skin if that is larger; never zero. `core_m` is the radius of the
+/// core's bounding sphere.
 double skin_of(const ToolSpec& spec, double core_m) noexcept
 {
     return std::max({spec.radius_m, kLeastSkin * core_m, kLeastSkin_m});
 }
 
-/// Radius of the core's sphere plus the tool's radius.
+/// Radius of the core's bounding sphere plus the radius or skin of the tool.
 double size_of(const ToolSpec& spec) noexcept
 {
     const double core_m = PlacedCore(spec.core, Similarity{}).radius();
     return core_m + skin_of(spec, core_m);
 }
 
-/// Arm of the metric: its square is the angular stiffness over the stiffness. Limited near the
-/// tool's size to stay in the numeric range.
+/// Arm of the metric: its square is the angular stiffness over the stiffness. It is limited to
+/// shares of the tool's size, to stay in the numeric range; without an angular stiffness it is the
+/// size.
 double arm_of(const ToolSpec& spec) noexcept
 {
     const double size_m = size_of(spec);
@@ -158,8 +160,8 @@ void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) no
     }
 }
 
-/// Place of the tool carried by the object: centre of the core and rotation keep their relation to
-/// it.
+/// Pose of a tool that the object carries: the centre of the core and the rotation stay the same in
+/// the object's frame.
 Similarity RigidProxy::along(const NearObject& object) const noexcept
 {
     const ObjectPose& before = *object.before;
@@ -170,9 +172,9 @@ Similarity RigidProxy::along(const NearObject& object) const noexcept
     return {rotation, center_m - rotation * center_m_, 1.0};
 }
 
-/// Bound on the displacement of the core's points between two places in one frame. The largest
-/// singular value of a difference of two scaled rotations is at most its norm / sqrt(2): two are
-/// equal, and the third, along the axis, is not larger.
+/// Bound on the displacement of the core's points between two poses. The largest singular value of
+/// the difference of two scaled rotations is at most its norm / sqrt(2): two are equal, and the
+/// third, along the axis, is not larger.
 double RigidProxy::way_m(const Similarity& from, const Similarity& to) const noexcept
 {
     constexpr double kOverSqrt2 = 0.7071067811865476;
@@ -181,15 +183,15 @@ double RigidProxy::way_m(const Similarity& from, const Similarity& to) const noe
            kOverSqrt2 * turned * core_radius_m_;
 }
 
-/// True if a point of the core could be on another side of a surface after moving to `target` while
-/// the objects move. A displacement within the poses' rounding does not count.
+/// True if a point of the core could change the side of a surface by a move to `target` while the
+/// objects move. A displacement within the poses' rounding does not count.
 bool RigidProxy::is_overrun(const Similarity& target,
                             std::span<const NearObject> objects) const noexcept
 {
     const double goes_m = way_m(place_, target);
     if (goes_m > 0.0 && goes_m >= clear_m_)
     {
-        return true; // Beyond the clearance from all other objects.
+        return true; // The motion exceeds the clearance from all objects without a surface here.
     }
     return std::ranges::any_of(
         objects,
@@ -249,8 +251,9 @@ double RigidProxy::likely_way_m() const noexcept
     return last_pushes_.empty() ? kInfinity : std::max(2.0 * went_m_, kLeastWay * radius_m_);
 }
 
-/// Converts a motion of the tool's origin and a rotation about it to that of the core's centre.
-BodyWay RigidProxy::way_of(const Motion<6>& motion) const noexcept
+/// Converts a motion of the tool's origin and a rotation about it to the motion of the core's
+/// centre.
+RigidWay RigidProxy::way_of(const Motion<6>& motion) const noexcept
 {
     const Vec3 turn = motion.tail<3>() / arm_m_;
     const Vec3 center = place_.rotation * center_m_;
@@ -271,7 +274,7 @@ ToolOutput RigidProxy::respond(const ProxyGoal& goal, std::span<const PlacedSurf
                                double clear_m) noexcept
 {
     ToolOutput output;
-    const BodyRoom room(surfaces, clear_m, radius_m_);
+    const FreeMotion room(surfaces, clear_m, radius_m_);
     is_over_constrained_ = false;
     exceeds_capacity_ = false;
     goes_on_ = false;
@@ -303,35 +306,35 @@ ToolOutput RigidProxy::respond(const ProxyGoal& goal, std::span<const PlacedSurf
 }
 
 void RigidProxy::step(const ProxyGoal& goal, std::span<const PlacedSurface> surfaces,
-                      const BodyRoom& room, ToolOutput& output) noexcept
+                      const FreeMotion& room, ToolOutput& output) noexcept
 {
     gather(goal, surfaces);
     const Motion<6> wanted = way_to(goal);
-    BodyMotion found = planes_->nearest(wanted);
+    RigidMotion found = planes_->nearest(wanted);
     const Bumps bumps = bumps_of(found, surfaces);
     if (bumps.are_there)
     {
         found = planes_->nearest(wanted - bumps.aside);
     }
     exceeds_capacity_ = exceeds_capacity_ || planes_->exceeds_capacity();
-    // Contacts left out would have to hold if the last of the radius is used up.
+    // A contact that was left out may have to hold if hardly any of the radius is left.
     is_over_constrained_ = found.is_over_constrained || (exceeds_capacity_ && room.is_scarce());
     sticks_ = found.sticks;
     slides_ = found.slides;
     output.in_contact = !found.pushes.empty();
-    const auto* const most = std::ranges::max_element(found.pushes, {}, &BodyPush::reaction);
+    const auto* const most = std::ranges::max_element(found.pushes, {}, &RigidPush::reaction);
     held_by_ = output.in_contact ? surfaces[planes_->touch(most->touch).surface].object : kNoObject;
     add_forces(goal, found, bumps, output);
     keep_holds(found, surfaces);
     output.lag_m = advance(goal, found, room);
 }
 
-/// Moves the proxy. While it sticks, it keeps its place to the last bit, or it would creep. Returns
-/// the remaining displacement.
-double RigidProxy::advance(const ProxyGoal& goal, const BodyMotion& found,
-                           const BodyRoom& room) noexcept
+/// Moves the proxy by the free share of the motion. A sticking proxy keeps its place to the last
+/// bit, as it would creep otherwise. Returns the length of the remaining motion.
+double RigidProxy::advance(const ProxyGoal& goal, const RigidMotion& found,
+                           const FreeMotion& room) noexcept
 {
-    const BodyWay way = way_of(found.motion);
+    const RigidWay way = way_of(found.motion);
     const double length_m = way.length_m();
     if (found.sticks && length_m <= kLeastMotion * radius_m_)
     {
@@ -344,7 +347,8 @@ double RigidProxy::advance(const ProxyGoal& goal, const BodyMotion& found,
                (share < 1.0 || (!found.pushes.empty() && length_m > kLongMotion * radius_m_));
     if (found.pushes.empty() && share == 1.0)
     {
-        place_ = {goal.rotation, goal.position_m, 1.0}; // The device pose, to the last bit.
+        // The proxy is at the device pose, to the last bit.
+        place_ = {goal.rotation, goal.position_m, 1.0};
         return 0.0;
     }
     const Vec3 center = place_.rotation * center_m_;
@@ -354,8 +358,8 @@ double RigidProxy::advance(const ProxyGoal& goal, const BodyMotion& found,
     return length_m - went_m_;
 }
 
-/// Holds a halted proxy: the last planes resist pressure. A core that an object has crossed has no
-/// proven way out, so the proxy is given up once its force has faded.
+/// Sets the output of a halted proxy: the last planes resist pressure. A core that an object has
+/// crossed has no proven way out, so the proxy is given up after kFadeTime_s.
 void RigidProxy::freeze(const ProxyGoal& goal, bool is_crossed, ToolOutput& output) noexcept
 {
     StaticVector<HalfSpace<6>, 6> spaces;
@@ -388,8 +392,8 @@ void RigidProxy::freeze(const ProxyGoal& goal, bool is_crossed, ToolOutput& outp
     }
 }
 
-/// Lets force and torque catch up. The device's motion counts only if the tool was
-/// over-constrained: a halted tool's force already contains it.
+/// Lets force and torque catch up. Motion of the device counts only if the tool was
+/// over-constrained, as a halted tool's force already contains it.
 void RigidProxy::catch_up(const ProxyGoal& goal, ToolOutput& output) noexcept
 {
     if (output.halted || !output.in_contact)
@@ -404,10 +408,10 @@ void RigidProxy::catch_up(const ProxyGoal& goal, ToolOutput& output) noexcept
     const bool has_waited = frame_.halted_s > 0.0 || has_no_room;
     const double way_m =
         goal.elapsed_s * (goal.velocity_m_per_s.norm() + arm_m_ * goal.spin_rad_per_s.norm());
-    const double by_hand_n = has_no_room ? spec_.stiffness_n_per_m * way_m : 0.0;
+    const double by_device_n = has_no_room ? spec_.stiffness_n_per_m * way_m : 0.0;
     output.force_n = force_.next(
-        {output.force_n, by_hand_n, spec_.force_max_n, rate_n, goal.elapsed_s, has_waited});
-    output.torque_nm = torque_.next({output.torque_nm, arm_m_ * by_hand_n, spec_.torque_max_nm,
+        {output.force_n, by_device_n, spec_.force_max_n, rate_n, goal.elapsed_s, has_waited});
+    output.torque_nm = torque_.next({output.torque_nm, arm_m_ * by_device_n, spec_.torque_max_nm,
                                      rate_nm, goal.elapsed_s, has_waited});
 }
 
@@ -439,11 +443,12 @@ void RigidProxy::add(std::uint32_t surface, std::span<const Contact> contacts,
     }
 }
 
-void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double elapsed_s) noexcept
+void RigidProxy::add(const RigidTouch& touch, const PlacedSurface& placed,
+                     double elapsed_s) noexcept
 {
     const Material& material = *placed.material;
     const ProxyMemory& memory = *placed.memory;
-    BodyGrip grip;
+    RigidGrip grip;
     grip.stiffness_n_per_m = std::min(spec_.stiffness_n_per_m, material.stiffness_n_per_m);
     grip.friction = slides_ ? material.dynamic_friction : material.static_friction;
     grip.dynamic = material.dynamic_friction;
@@ -460,7 +465,8 @@ void RigidProxy::add(const BodyTouch& touch, const PlacedSurface& placed, double
     planes_->add(touch, grip);
 }
 
-/// Adds the kept holds. Drops those that the tool has left, and those measured again at rest.
+/// Adds the kept holds as touches. Drops holds that the tool has left, and, at rest, holds that
+/// were measured again.
 void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elapsed_s) noexcept
 {
     std::size_t kept = 0;
@@ -472,10 +478,10 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elaps
             continue;
         }
         const ObjectPose& pose = *placed->pose;
-        const BodyTouch touch{static_cast<std::uint32_t>(placed - surfaces.begin()),
-                              place_.translation_m + place_.rotation * hold.on_tool_m,
-                              to_world(pose, hold.on_surface_m), pose.rotation * hold.normal,
-                              hold.is_face};
+        const RigidTouch touch{static_cast<std::uint32_t>(placed - surfaces.begin()),
+                               place_.translation_m + place_.rotation * hold.on_tool_m,
+                               to_world(pose, hold.on_surface_m), pose.rotation * hold.normal,
+                               hold.is_face};
         const Vec3 gap = touch.on_tool_m - touch.on_surface_m;
         const double height = touch.normal.dot(gap);
         const double slid = (gap - height * touch.normal).norm();
@@ -496,14 +502,14 @@ void RigidProxy::add_holds(std::span<const PlacedSurface> surfaces, double elaps
     }
 }
 
-void RigidProxy::keep_holds(const BodyMotion& found,
+void RigidProxy::keep_holds(const RigidMotion& found,
                             std::span<const PlacedSurface> surfaces) noexcept
 {
     last_pushes_.clear();
-    for (const BodyPush& push : found.pushes)
+    for (const RigidPush& push : found.pushes)
     {
         last_pushes_.push_back({push.normal, planes_->grip(push.touch).stiffness_n_per_m});
-        const BodyTouch& touch = planes_->touch(push.touch);
+        const RigidTouch& touch = planes_->touch(push.touch);
         const ObjectPose& pose = *surfaces[touch.surface].pose;
         keep({surfaces[touch.surface].object,
               place_.rotation.transpose() * (touch.on_tool_m - place_.translation_m),
@@ -512,7 +518,7 @@ void RigidProxy::keep_holds(const BodyMotion& found,
     }
 }
 
-/// Keeps a hold in place of an almost equal one. If the list is full, the oldest is dropped.
+/// Keeps a hold, in place of an almost equal one. If the list is full, drops the oldest hold.
 void RigidProxy::keep(const Hold& hold) noexcept
 {
     const auto is_same = [&hold, this](const Hold& other)
@@ -532,17 +538,17 @@ void RigidProxy::keep(const Hold& hold) noexcept
     holds_[holds_.size() - 1] = hold;
 }
 
-/// Texture on the springs, whose energy has K e(d) h besides K d^2 / 2. Here d is the motion held
-/// back by the planes, in its metric, and h is taken at the middle of the core.
-RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
+/// Effect of the textures: the spring's energy has K e(d) h besides K d^2 / 2. Here d is the motion
+/// that planes hold back, in the metric, and h is taken at the middle of the core.
+RigidProxy::Bumps RigidProxy::bumps_of(const RigidMotion& held,
                                        std::span<const PlacedSurface> surfaces) const noexcept
 {
     Bumps bumps;
     Motion<6> pressed = Motion<6>::Zero();
     double reactions = 0.0;
-    for (const BodyPush& push : held.pushes)
+    for (const RigidPush& push : held.pushes)
     {
-        const BodyTouch& touch = planes_->touch(push.touch);
+        const RigidTouch& touch = planes_->touch(push.touch);
         const Vec3 lever = planes_->lever_m(push.touch) / arm_m_;
         pressed.head<3>() += push.reaction * touch.normal;
         pressed.tail<3>() += push.reaction * lever.cross(touch.normal);
@@ -560,7 +566,7 @@ RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
     double push_m = 0.0;
     Vec3 slope_m(0.0, 0.0, 0.0);
     bumps.stiffening = 0.0;
-    for (const BodyPush& push : held.pushes)
+    for (const RigidPush& push : held.pushes)
     {
         const PlacedSurface& placed = surfaces[planes_->touch(push.touch).surface];
         const double share = push.reaction / reactions;
@@ -577,12 +583,13 @@ RigidProxy::Bumps RigidProxy::bumps_of(const BodyMotion& held,
     return bumps;
 }
 
-/// Adds each push with the spring of its own object. The sum keeps its line of action.
-void RigidProxy::add_forces(const ProxyGoal& goal, const BodyMotion& found, const Bumps& bumps,
+/// Adds the force of each push, with the spring of its own object, which keeps the wrench's line of
+/// action.
+void RigidProxy::add_forces(const ProxyGoal& goal, const RigidMotion& found, const Bumps& bumps,
                             ToolOutput& output) noexcept
 {
     double reactions = 0.0;
-    for (const BodyPush& push : found.pushes)
+    for (const RigidPush& push : found.pushes)
     {
         const double stiffness_n_per_m = planes_->grip(push.touch).stiffness_n_per_m;
         const Motion<6> held = stiffness_n_per_m * push.reaction * push.normal;
@@ -604,22 +611,22 @@ void RigidProxy::add_forces(const ProxyGoal& goal, const BodyMotion& found, cons
     clamp(output);
 }
 
-/// Damps motion across the surface at each pushing contact, by its share of the pushes. The damping
-/// never exceeds the push, so nothing pulls.
-void RigidProxy::damp(const ProxyGoal& goal, const BodyMotion& found, double reactions,
+/// Damps motion across the surface at each pushing contact, by its share of the pushes. No damping
+/// exceeds its push, so nothing pulls.
+void RigidProxy::damp(const ProxyGoal& goal, const RigidMotion& found, double reactions,
                       ToolOutput& output) const noexcept
 {
-    for (const BodyPush& push : found.pushes)
+    for (const RigidPush& push : found.pushes)
     {
-        const BodyGrip& grip = planes_->grip(push.touch);
+        const RigidGrip& grip = planes_->grip(push.touch);
         if (!(grip.damping_n_s_per_m > 0.0) || !(reactions > 0.0))
         {
             continue;
         }
         const Vec3& normal = planes_->touch(push.touch).normal;
         const Vec3 lever_m = planes_->lever_m(push.touch);
-        const Vec3 hand = goal.velocity_m_per_s + goal.spin_rad_per_s.cross(lever_m);
-        const double inward = normal.dot(grip.velocity_m_per_s - hand);
+        const Vec3 device_m_per_s = goal.velocity_m_per_s + goal.spin_rad_per_s.cross(lever_m);
+        const double inward = normal.dot(grip.velocity_m_per_s - device_m_per_s);
         const double part = push.reaction / reactions;
         const double damping_n = std::max(part * grip.damping_n_s_per_m * inward,
                                           -grip.stiffness_n_per_m * push.reaction);

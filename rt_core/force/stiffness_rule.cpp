@@ -29,14 +29,14 @@ StiffnessLimits stiffness_limits(const DeviceLimits& device, double period_s,
             : kInfinity;
     limits.device_n_per_m = device.stiffness_max_n_per_m;
     const double passive = std::min(limits.sampling_n_per_m, limits.quantisation_n_per_m);
-    limits.cap_n_per_m = std::min(kStiffnessMargin * passive, limits.device_n_per_m);
+    limits.limit_n_per_m = std::min(kStiffnessMargin * passive, limits.device_n_per_m);
     return limits;
 }
 
 double stiffness_limit(const DeviceLimits& device, double period_s,
                        double surface_damping_n_s_per_m) noexcept
 {
-    return stiffness_limits(device, period_s, surface_damping_n_s_per_m).cap_n_per_m;
+    return stiffness_limits(device, period_s, surface_damping_n_s_per_m).limit_n_per_m;
 }
 
 const char* find_fault(const DeviceLimits& device) noexcept
@@ -88,7 +88,7 @@ const char* find_fault(const RotationLimits& turn) noexcept
     }
     if (turn.torque_max_nm > 0.0 && !turn.is_measured)
     {
-        return "device: a torque needs a rotation that is measured";
+        return "device: a device with torque must measure its rotation";
     }
     const bool turns = turn.torque_max_nm > 0.0;
     const auto is_good = [turns](double value)

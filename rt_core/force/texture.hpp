@@ -11,29 +11,30 @@
 namespace tactus
 {
 
-/// The bumps of a material, as energy of the spring between device and proxy.
+/// Bumps of a material, as energy of the spring between device and proxy.
 ///
-/// Besides 1/2 K d^2, d being the depth, the spring holds K e(d) h(p) for a proxy at p:
+/// The spring of a proxy at p with the depth d holds the energy K e(d) h(p), besides 1/2 K d^2:
 ///
 ///     h(p) = height x sum over the object's axes of (w(p / length) - 1/2)
 ///     w(t) = 16 t^2 (1 - t)^2, of t's fraction: a bump from 0 to 1, twice differentiable
 ///     e(d) = D (d / (D + d))^2, D = length^2 / (64 height)
 ///
-/// So the energy that a user puts into bumps is given back elsewhere, completely. D keeps e times
-/// any curvature of h within 1/2: the proxy has one place of rest for a goal, steps there are steps
-/// down in energy, and no wall gets stiffer along its surface. Across it the stiffness grows by e''
-/// h <= 3 height / D = 192 (height / length)^2, 0.19 at most. As e'(d) <= 2 d / D, a push stays a
-/// push. Proofs: docs/stability.md.
+/// So bumps give back all energy that a user puts into them. D keeps e times any curvature of h
+/// within 1/2: the proxy has one place of rest for a goal, and no wall gets stiffer along its
+/// surface. Across it the stiffness grows by e'' h <= 3 height / D = 192 (height / length)^2, at
+/// most 0.19. A push stays a push, as e'(d) <= 2 d / D. Proofs: docs/stability.md.
 struct Texture
 {
-    /// Fraction, 0 .. 1, from the next whole number below. kGoalRange_m / kTextureLengthMin_m fits.
+    /// Fraction of `turns` above the next lower whole number, 0 .. 1. |turns| up to kGoalRange_m /
+    /// kTextureLengthMin_m.
     [[nodiscard]] static double fraction_of(double turns) noexcept TACTUS_NONBLOCKING
     {
         const double cut = turns - static_cast<double>(static_cast<std::int64_t>(turns));
         return cut < 0.0 ? cut + 1.0 : cut;
     }
 
-    /// Bound on the stiffness of a wall with this texture, in K.
+    /// Bound on the stiffness of a wall with this texture, as a multiple of the wall's own
+    /// stiffness K.
     [[nodiscard]] static double stiffening(const Material& material) noexcept TACTUS_NONBLOCKING
     {
         const double height_m = material.texture_height_m;
@@ -41,12 +42,12 @@ struct Texture
         return 1.0 + 192.0 * steepness * steepness;
     }
 
-    double push_m{0.0}; ///< e'(d) h: times K, the added push.
-    /// e(d) grad h, world frame: times K, the force along the surface.
+    double push_m{0.0}; ///< Product e'(d) h: times K, the added push.
+    /// Product e(d) grad h in the world frame: times K, the force along the surface.
     Vec3 slope_m{0.0, 0.0, 0.0};
 
-    /// Texture at a proxy at `place_m` in the world, pressed in by `depth_m`. The bumps are the
-    /// object's, in metres of the world.
+    /// Texture at a proxy at `place_m` in the world, pressed in by `depth_m`. Bumps lie along the
+    /// axes of the object, in metres of the world.
     [[nodiscard]] static Texture at(const Material& material, const ObjectPose& pose,
                                     const Vec3& place_m, double depth_m) noexcept TACTUS_NONBLOCKING
     {

@@ -45,7 +45,7 @@ bool VelocityWindow::is_straight(std::uint32_t last, const Vec3& velocity) const
         const Vec3 off = positions_m_[i] - (positions_m_[0] - velocity * ages_s_[i]);
         const bool is_on_it = std::abs(off.x()) <= quantum_m_ && std::abs(off.y()) <= quantum_m_ &&
                               std::abs(off.z()) <= quantum_m_;
-        if (!is_on_it) // NaN is on no line.
+        if (!is_on_it) // NaN counts as off the line.
         {
             return false;
         }

@@ -21,15 +21,16 @@ namespace
 static_assert(sizeof(LocalTriangle) == kTriangleBytes);
 static_assert(offsetof(LocalTriangle, corners_m) == kTriangleCornersAt);
 
-/// Number of batches that all pairs of a frame may have together.
+/// Largest number of batches of the surfaces of all pairs of a frame together.
 constexpr std::size_t kMostBatches =
     std::size_t{kLocalSurfaces} * kMaxLocalTriangles / kPlaneLanes + kMaxNear;
 
-/// Rounding of a float, as a share, rounded up.
+/// Bound on the relative rounding of a conversion to float.
 constexpr double kFloatRounding = 0x1p-22;
-/// A proposed direction is not longer than 1 by more than this share (docs/accuracy.md).
+/// Bound on the excess of a proposed direction's length over 1 (docs/accuracy.md).
 constexpr double kDirectionRounding = 0x1p-20;
-/// Share of the radius: a sphere deeper in a face is decided in double precision.
+/// Least height of the sphere over a face for which single precision decides, as a share of the
+/// radius.
 constexpr double kDeepest = 0x1p-6;
 
 std::uint32_t batches_of(const LocalSurface& surface) noexcept
@@ -42,7 +43,7 @@ std::uint32_t faces_in(const LocalSurface& surface, std::uint32_t batch) noexcep
     return std::min(kPlaneLanes, surface.count - kPlaneLanes * batch);
 }
 
-/// Lower bound on the distance of a batch's nearest face from the core, in the world.
+/// Lower bound on the distance of a batch's nearest face from the core, in metres of the world.
 double low_of(const PlacedSurface& placed, std::uint32_t batch) noexcept
 {
     const auto faces = placed.surface->distances_m.subspan(std::size_t{kPlaneLanes} * batch,
@@ -50,7 +51,7 @@ double low_of(const PlacedSurface& placed, std::uint32_t batch) noexcept
     return *std::ranges::min_element(faces) * placed.pose->scale;
 }
 
-/// Distance below which batches fit; infinite if all do.
+/// Distance below which all batches fit into the list; infinite if all batches fit.
 double farthest_that_fits(std::span<const PlacedSurface> surfaces) noexcept
 {
     std::size_t count = 0;
@@ -186,14 +187,15 @@ PlaneQuestion Vicinity::question(const Part& part, const Vec3& place) const noex
             0.0F};
 }
 
-/// Height at the sphere's place from which a face does not restrain a sphere that moves out of
-/// others.
+/// Height of the sphere's place over a face from which the face does not restrain a motion out of
+/// other faces.
 double Vicinity::least_here_m(double radius_m) const noexcept
 {
     return std::min(radius_m, std::max(clear_m_, kDeepest * radius_m));
 }
 
-/// The batches with faces that a sphere of radius `least_m` may enter between here and the place.
+/// Finds the batches with faces that a sphere of radius `least_m` may enter between its place and
+/// `place`.
 Vicinity::Hits Vicinity::find_below(Part& part, const Vec3& place, double least_m) noexcept
 {
     if (part.table.count == 0)
@@ -243,7 +245,7 @@ const LocalTriangle& Vicinity::triangle(std::uint32_t face) const noexcept
     return first[face % kPlaneLanes];
 }
 
-/// The face's plane, seen from any place.
+/// Computes the face's plane as seen from `place`, in double precision.
 Vicinity::Plane Vicinity::see(std::uint32_t face, const Vec3& place) const noexcept
 {
     TACTUS_ASSERT(has(face));
@@ -260,7 +262,7 @@ Vicinity::Plane Vicinity::see(std::uint32_t face, const Vec3& place) const noexc
     return {normal, length * pose.scale - normal.dot(place)};
 }
 
-/// True if the plane was computed in double precision from here.
+/// True if the face's plane was computed in double precision for the sphere's place.
 bool Vicinity::is_seen(std::uint32_t face) const noexcept
 {
     const Look& look = looks_[face % kLooks];
@@ -321,7 +323,8 @@ HalfSpace<3> Vicinity::half_space(std::uint32_t face, double radius_m) noexcept
 std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double radius_m,
                                                     std::span<const std::uint32_t> passed) noexcept
 {
-    TACTUS_ASSERT(parts_.empty() || radius_m > 0.0); // A point has no skin without a surface.
+    // The radius is 0 only for a point without any surface.
+    TACTUS_ASSERT(parts_.empty() || radius_m > 0.0);
     const Vec3 place = place_ + motion;
     double deepest = radius_m * (1.0 - kContactTolerance);
     std::optional<std::uint32_t> entered;
@@ -363,9 +366,9 @@ std::optional<std::uint32_t> Vicinity::find_entered(const Vec3& motion, double r
     return entered;
 }
 
-/// Share of the motion that the face's plane in single precision allows a sphere, at most the share
-/// in double precision. `here` and `way` are the stand and the motion in the model's frame, in
-/// double precision: rounding turns no motion along the face into one towards it.
+/// Share of the motion, 0 .. 1, that the face's plane in single precision allows: at most the share
+/// in double precision. `here` and `way` are the sphere's place and the motion in the model's
+/// frame; in double precision, so that rounding turns no motion along the face into one towards it.
 double Vicinity::proven_share(std::uint32_t face, const Vec3& here, const Vec3& way,
                               double radius_m) const noexcept
 {
@@ -426,8 +429,8 @@ double Vicinity::free_share(const Vec3& motion, double radius_m) noexcept
     return share;
 }
 
-/// Share of the motion before the sphere touches. The distance along the motion is convex, so the
-/// plane from each place allows no more than the face does.
+/// Iterates from place to place: the distance along the motion is convex, so the plane from each
+/// place allows no more than the face does.
 double Vicinity::share_before(std::uint32_t face, const Vec3& motion, double radius_m) noexcept
 {
     const double least_step = kLeastStep * radius_m / motion.norm();
@@ -445,9 +448,9 @@ double Vicinity::share_before(std::uint32_t face, const Vec3& motion, double rad
         }
         if (!(gap > 0.0))
         {
-            break; // The sphere touches here and may move along the face: closing may be zero.
+            break; // The sphere touches here; `closing` may be zero if it moves along the face.
         }
-        const double step = gap / closing; // Below 1 - share.
+        const double step = gap / closing; // The step is less than 1 - share.
         share += step;
         if (step <= least_step)
         {

@@ -45,7 +45,8 @@ public:
 
     /// Reserves `faces` for a new owner, or as many as are neither taken nor reserved.
     [[nodiscard]] PoolShare promise(std::uint32_t faces) noexcept { return room_.promise(faces); }
-    /// See PoolRoom::try_promise() and end_promise().
+    /// Reserves `faces` for an owner without a reservation. False, with nothing changed, if fewer
+    /// are neither taken nor reserved.
     [[nodiscard]] bool try_promise(PoolShare& share, std::uint32_t faces) noexcept
     {
         return room_.try_promise(share, faces);

@@ -22,7 +22,7 @@ public:
             check_page(slot);
         }
         expect(refined_ == forest_.refined_count_, "forest", refined_,
-               "records are refined, and it counts others");
+               "records are refined, but its count differs");
         for (std::uint32_t i = 0; finder_.is_sound() && i < forest_.faces_.size(); ++i)
         {
             check_face(PrimId{i});
@@ -30,11 +30,11 @@ public:
         if (finder_.is_sound())
         {
             expect(active_ == expected_, "forest", active_,
-                   "faces are active, and the refined records make others");
+                   "faces are active, but the refined records give another number");
             expect(active_ == forest_.active_faces(), "forest", active_,
-                   "faces are active, and it counts others");
+                   "faces are active, but its count differs");
             expect(hash_ == forest_.hash_, "forest", active_,
-                   "faces are active, and its hash is of others");
+                   "faces are active, but its hash differs");
         }
         return finder_.first();
     }
@@ -51,7 +51,7 @@ private:
         const std::uint32_t free = forest_.pool_->capacity() - forest_.pool_->used();
         for (std::uint32_t i = forest_.pool_->first_free_; listed < free; ++listed)
         {
-            if (!expect(i < forest_.faces_.size(), "prim", i, "is free and not there") ||
+            if (!expect(i < forest_.faces_.size(), "prim", i, "is free and out of range") ||
                 !expect(forest_.faces_[i].id.is_none(), "prim", i, "is active and free"))
             {
                 return;
@@ -61,10 +61,10 @@ private:
         const auto none = static_cast<std::uint32_t>(
             std::ranges::count_if(forest_.faces_, [](const VertexForest::ActiveFace& face)
                                   { return face.id.is_none(); }));
-        expect(none == free, "forest", none, "slots hold no face, and its pool counts others");
+        expect(none == free, "forest", none, "slots hold no face, but the pool's count differs");
         expect(forest_.pool_->index_list_.size() == forest_.pool_->used(), "forest",
                forest_.pool_->index_list_.size(),
-               "faces are in its index, and its pool has others");
+               "faces are in its index, but the pool's count differs");
     }
 
     void check_page(std::uint32_t slot) noexcept
@@ -124,7 +124,7 @@ private:
         if (!expect(face.id.value < forest_.counts_.face_ids(), "prim", prim.value,
                     "holds a face that the model does not have") ||
             !expect(forest_.find(face.id) == prim, "face", face.id.value,
-                    "is found elsewhere or nowhere") ||
+                    "is not found in its slot") ||
             !check_state(face) || !check_corners(face))
         {
             return;
@@ -166,7 +166,7 @@ private:
         const VertexId vertex = forest_.counts_.vertex_of(record);
         return expect(face.state.place() < changed_by.star_end() &&
                           changed_by.star[face.state.place()] == face.id,
-                      "face", id, "is in a state that its record does not give it") &&
+                      "face", id, "is in a state that its record does not give") &&
                expect(std::ranges::find(face.corners, vertex) != face.corners.end(), "face", id,
                       "lacks the vertex of the record that changed it last");
     }
@@ -181,7 +181,7 @@ private:
                                    { return check_corner(face.id.value, corner, finest); });
     }
 
-    /// False if the corner's record can't be checked further.
+    /// Checks one corner of a face; false if its record is not refined.
     bool check_corner(std::uint32_t face, VertexId corner, std::uint32_t finest) noexcept
     {
         if (forest_.counts_.is_base(corner))
@@ -195,7 +195,7 @@ private:
             return false;
         }
         expect(forest_.pages_->resident(forest_.counts_.record_of(corner)).depth <= finest, "face",
-               face, "has a finer corner than what changed it last");
+               face, "has a corner finer than the record that changed it last");
         return true;
     }
 

@@ -21,7 +21,8 @@ std::uint32_t corner_place(const std::array<VertexId, 3>& corners, VertexId vert
 static_assert(kMaxStarFaces <= kBlockFaces, "a star is laid out as a block");
 static_assert(kMaxFanFaces + 3 <= kBlockVertices);
 
-/// A = (v, u, w0), B = (v, wk, u), fan face i = (v, wi, wi+1).
+/// Sets lanes, corners and rows of a record's star: lane 0 is A = (v, u, w0), lane 1 is B = (v, wk,
+/// u), and lane 2 + i is the fan face (v, wi, wi+1).
 void lay_out(BlockGeometry& star, const VsplitRecord& record) noexcept
 {
     star.corners[0].fill(0);
@@ -306,8 +307,8 @@ ChangedFace VertexForest::describe(PrimId prim) const noexcept
     return change;
 }
 
-/// Finds the fan faces in the states that the record expects, and the chain w0 .. wk round its
-/// parent.
+/// Finds the fan faces and the chain w0 .. wk round the record's parent. False if a face is not in
+/// the state that the record expects.
 bool VertexForest::find_fan(const VsplitRecord& record, Fan& fan) const noexcept
 {
     for (std::uint32_t i = 0; i < record.fan_size; ++i)
@@ -338,7 +339,7 @@ bool VertexForest::find_fan(const VsplitRecord& record, Fan& fan) const noexcept
     return true;
 }
 
-/// Finds the star in the states that the record gave it.
+/// Finds the faces of the star. False if one is not in the state that the record gave it.
 bool VertexForest::find_star(RecordId id, const VsplitRecord& record,
                              std::array<PrimId, kMaxStarFaces>& star) const noexcept
 {

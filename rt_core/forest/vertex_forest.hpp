@@ -31,8 +31,8 @@ class VertexForest
 public:
     using ActiveFace = tactus::ActiveFace;
 
-    /// The star of a record that was just split, in the layout of a block: lane i is the face at
-    /// place i of the star, row 0 is v, row 1 is u, and w0 .. wk follow.
+    /// The star of a record that was just split, in the layout of a block: lane i is star[i] of the
+    /// record, row 0 is v, row 1 is u, and w0 .. wk follow (VsplitRecord).
     struct StarGeometry
     {
         BlockGeometry geometry;
@@ -46,10 +46,10 @@ public:
         inconsistent, ///< The record contradicts the faces that it names: a fault of the model.
     };
 
-    /// Enters the base mesh in `slots.base` into the tree, which must be empty, have the same owner
-    /// and a pool with as many prims as `faces` has faces. At least `least` faces are reserved for
-    /// the forest; the base mesh must fit. Nothing enters on a `measuring` arena, nor if `slots`
-    /// have no base mesh: begin() gives it later.
+    /// Enters the base mesh of `slots` into the tree, unless there is none (begin() sets it later)
+    /// or the arena is measuring. The tree must be empty, of the same owner, and its pool must have
+    /// a prim for each face of `faces`. `least` faces are reserved, or as many as are free; the
+    /// base mesh must fit.
     VertexForest(const Arena& arena, FacePool& faces, ModelId owner, std::uint32_t least,
                  const ModelCounts& counts, PageSlots slots, PageTable& pages,
                  AbTree& tree) noexcept;
@@ -72,18 +72,19 @@ public:
     /// nothing may be split or merged; after it the pages may be removed.
     [[nodiscard]] std::uint32_t leave(std::uint32_t most) noexcept TACTUS_NONBLOCKING;
 
-    /// Undoes the record's collapse. The record is linked and not refined, and every record it
-    /// depends on is refined (see missing_dependency()).
+    /// Undoes the record's collapse. The record must be linked and not refined, and every record
+    /// that it depends on refined (missing_dependency()).
     [[nodiscard]] SplitOutcome split(RecordId id) noexcept
     {
         StarGeometry star;
         return split(id, pages_->resident(id), star);
     }
-    /// The same for a record at hand; writes `star` if the split is done.
+    /// The same with the record's content at hand; writes `star` if the outcome is `done`.
     [[nodiscard]] SplitOutcome split(RecordId id, const VsplitRecord& record,
                                      StarGeometry& star) noexcept TACTUS_NONBLOCKING;
 
-    /// Redoes the record's collapse; false if a star face has been refined further.
+    /// Redoes the record's collapse. False, with nothing changed, if another record refined a star
+    /// face further.
     [[nodiscard]] bool try_merge(RecordId id) noexcept TACTUS_NONBLOCKING;
 
     /// The first record that must be split before this one; none if all are split.
@@ -105,7 +106,7 @@ public:
     [[nodiscard]] Vec3f position_of(VertexId vertex) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] std::array<Vec3f, 3> corners_of(PrimId prim) const noexcept TACTUS_NONBLOCKING;
 
-    /// The face as it is now, for a tree that has no place for it yet.
+    /// The present face, for AbTree::offer_unplaced(). Its id is none if the prim has no face.
     [[nodiscard]] ChangedFace describe(PrimId prim) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] std::uint32_t active_faces() const noexcept { return share_.used; }
@@ -126,13 +127,13 @@ private:
     struct FanFace
     {
         PrimId prim{};
-        std::uint32_t place{0}; ///< Place of the corner that changes.
+        std::uint32_t place{0}; ///< Index of the corner that changes.
     };
     struct Fan
     {
         std::array<FanFace, kMaxFanFaces> faces{};
-        VertexId first{}; ///< w0
-        VertexId last{};  ///< wk
+        VertexId first{}; ///< First ring vertex, w0.
+        VertexId last{};  ///< Last ring vertex, wk.
     };
 
     /// Contribution of a face to the state hash.
@@ -159,7 +160,7 @@ private:
     std::span<ActiveFace> faces_; ///< Faces of the whole pool.
     std::uint32_t owner_;
     PoolShare share_;
-    std::uint32_t entered_{0}; ///< Faces of the base mesh that entered or were split.
+    std::uint32_t entered_{0}; ///< Faces of the base mesh that entered the tree.
     std::uint32_t refined_count_{0};
     std::uint32_t active_max_{0};
     std::uint64_t hash_{0};

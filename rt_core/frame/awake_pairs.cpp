@@ -46,8 +46,8 @@ void AwakePairs::order() noexcept
     lend_fronts();
 }
 
-/// Lends fronts to the highest-priority pairs of mesh tools. A front from another pair starts
-/// empty.
+/// Lends fronts to the highest-priority pairs of mesh tools, and takes them back from others. A
+/// newly lent front is empty.
 void AwakePairs::lend_fronts() noexcept
 {
     StaticVector<Pair*, PairFront::kFronts> first;

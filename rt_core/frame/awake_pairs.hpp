@@ -16,27 +16,27 @@
 namespace tactus
 {
 
-/// The pairs of tools and objects that are near each other, their outputs, and free places for new
+/// Pairs of tools and objects that are near each other, with their outputs and memory for further
 /// pairs. Haptic thread.
 class AwakePairs
 {
 public:
-    /// Capacity for `most` pairs of such tools.
+    /// Reserves memory for `most` pairs of these tools.
     AwakePairs(Arena& arena, std::span<const ToolSpec> tools, std::uint32_t most) noexcept;
 
     [[nodiscard]] std::uint32_t capacity() const noexcept
     {
         return static_cast<std::uint32_t>(pairs_.size());
     }
-    /// Tool by tool; the pairs of a tool in order of the objects' numbers.
+    /// All pairs, sorted by tool, then by object number.
     [[nodiscard]] std::span<Pair* const> all() const noexcept { return awake_.view(); }
     [[nodiscard]] std::span<Pair* const> of(std::uint32_t tool) const noexcept
     {
         return all().subspan(first_of_tool_[tool], first_of_tool_[tool + 1] - first_of_tool_[tool]);
     }
-    /// The pairs as order() sorted them, the highest priority first.
+    /// All pairs, the highest priority first, as sorted by the last order().
     [[nodiscard]] std::span<Pair* const> by_priority() const noexcept { return order_.view(); }
-    /// Sorts the pairs; called after Pair::place() of each.
+    /// Sorts the pairs by priority; called after Pair::place() of each.
     void order() noexcept TACTUS_NONBLOCKING;
 
     /// Begins a pair; capacity must be left.
@@ -61,7 +61,8 @@ private:
     StaticVector<std::uint32_t, kMaxPairs> free_;
     StaticVector<PairFront*, PairFront::kFronts> free_fronts_;
     StaticVector<Pair*, kMaxPairs> awake_;
-    std::array<std::uint32_t, kMaxTools + 1> first_of_tool_{}; ///< First pair of each tool.
+    /// Index of each tool's first pair in awake_.
+    std::array<std::uint32_t, kMaxTools + 1> first_of_tool_{};
     StaticVector<Pair*, kMaxPairs> order_;
     std::array<PairOutput, kMaxPairs> outputs_{};
 };

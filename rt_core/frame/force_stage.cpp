@@ -13,7 +13,7 @@ namespace
 ToolOutput step(FrameParts& parts, std::uint32_t tool, double clear_m, std::uint32_t& planes,
                 WorkBudget& work) noexcept
 {
-    work.spend(Tool::is_held_as_body(parts.tools[tool].spec()) ? WorkCost::rigid_step : 0);
+    work.spend(Tool::is_held_as_rigid(parts.tools[tool].spec()) ? WorkCost::rigid_step : 0);
     StaticVector<PlacedSurface, kMaxNear> near;
     for (Pair* pair : parts.pairs.of(tool))
     {
@@ -46,7 +46,7 @@ ToolOutput respond(FrameParts& parts, std::uint32_t index, NarrowPhase& narrow,
         const ToolOutput next = step(parts, index, clear_left_m, planes_left, work.budget);
         if (next.halted)
         {
-            break; // The last step's force belongs to a known place.
+            break; // The force of the step before stays, as its place is known.
         }
         output = next;
     }
@@ -55,7 +55,8 @@ ToolOutput respond(FrameParts& parts, std::uint32_t index, NarrowPhase& narrow,
     return tool.finish(output, clear_m);
 }
 
-/// True if the tool waits at an object without a pair, or at a model that isn't resident.
+/// True if the tool stops short of its goal because of an object without a pair, or a model that
+/// isn't resident.
 bool is_walled(const FrameParts& parts, std::uint32_t tool, const ToolOutput& output) noexcept
 {
     return (output.halted || output.under_way) &&

@@ -10,9 +10,8 @@ namespace tactus
 {
 
 /// Last stage of a frame: moves each present tool that does not rest towards its device and
-/// computes its force, into ToolSet::outputs(). A tool that has farther to go than its queries
-/// prove moves in up to RigidProxy::kStepsPerFrame steps, with its queries repeated before each.
-/// Haptic thread.
+/// computes its force, into ToolSet::outputs(). If the queries prove too little for the whole way,
+/// the tool moves in several steps, with new queries before each. Haptic thread.
 void render_forces(FrameParts& parts, NarrowPhase& narrow,
                    FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 

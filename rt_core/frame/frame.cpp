@@ -44,7 +44,7 @@ Frame::Frame(PassKey /*key*/, Arena& arena, const FrameSetup& setup) noexcept
     , refinement_(std::ranges::any_of(setup.tools, &is_mesh))
     , narrow_(arena, setup)
 {
-    // A missing model means that there will be no frame.
+    // If a model is missing, start() refuses this frame.
     if (!arena.is_measuring() && parts_.models.size() == setup.models.size())
     {
         SceneChanges::place_first(setup, parts_, neighbours_);
@@ -105,7 +105,7 @@ void Frame::begin(const FrameInput& input) noexcept
     parts_.pools.cache.forget_taken();
 }
 
-/// Places each pair for the tool and object of this frame, and orders the pairs by priority.
+/// Updates each pair for this frame's poses, and orders the pairs by priority.
 void Frame::place_pairs() noexcept
 {
     for (Pair* pair : parts_.pairs.all())

@@ -24,7 +24,7 @@
 namespace tactus
 {
 
-/// The controller's frame: all stages in order, every period, on the haptic thread.
+/// Frame of the controller: all stages in order, once a period, on the haptic thread.
 ///
 /// Takes all its memory from the arena at start. `run` does not allocate, lock, call the system,
 /// log or throw and reads no clock; every loop in it is bounded by the budgets and by limits.hpp.
@@ -32,9 +32,9 @@ namespace tactus
 class Frame
 {
 public:
-    /// Reads headers and base meshes and lays out all pools. Not on the haptic thread. A refusal
-    /// changes nothing, except base_refused, which leaves no frame and uses up the memory. The
-    /// arena's memory must outlive the frame.
+    /// Reads headers and base meshes and lays out all pools; not on the haptic thread. The arena's
+    /// memory must outlive the frame. If refused, nothing has changed, except for base_refused,
+    /// which uses up the memory.
     [[nodiscard]] static Result<Done, FrameRefusal> start(std::optional<Frame>& frame, Arena& arena,
                                                           const FrameSetup& setup) noexcept;
     /// Bytes that start() takes from the arena, for headers that parse (asserted).
@@ -46,32 +46,33 @@ public:
     Frame& operator=(Frame&&) = delete;
     ~Frame() = default;
 
-    /// Runs one period, on the haptic thread. A change that can't be made is refused, counted by
-    /// its reason, and changes nothing. The output is valid until the next run.
+    /// Runs one period, on the haptic thread. A change of the scene that can't be made is refused,
+    /// counted by its reason, and changes nothing. The output is valid until the next run.
     [[nodiscard]] FrameOutput run(const FrameInput& input,
                                   StageMark mark = {}) noexcept TACTUS_NONBLOCKING;
 
-    /// Warms caches: repeats the last frame's queries, into scratch memory, with the same machine
-    /// code. Called in the wait before the deadline. No effect on any result.
+    /// Warms the processor's caches: repeats the last frame's queries into scratch memory. Called
+    /// in the wait before the deadline. No effect on any result.
     void warm_caches() noexcept TACTUS_NONBLOCKING;
 
-    /// Tool, in set-up order; it must exist, which is not checked. The same holds for models.
+    /// Tool by its index in set-up order; it must exist, which is not checked. The same holds for
+    /// model().
     [[nodiscard]] const Tool& tool(std::uint32_t index) const noexcept
     {
         return parts_.tools[index];
     }
     /// The scene's objects by their numbers, after the last frame.
     [[nodiscard]] const ObjectTable& objects() const noexcept { return parts_.objects; }
-    /// Regions that tools may touch, highest priority first: the last ones searched for pages.
+    /// Regions that tools may touch, highest priority first, as of the last run that ranked them.
     [[nodiscard]] std::span<const RankedRegion> regions() const noexcept
     {
         return loading_.regions();
     }
-    /// A model with its inbox, linker and slots, which are the transport thread's.
+    /// Model by its id. Its linker and slots are for the transport thread.
     [[nodiscard]] Model& model(ModelId id) noexcept { return parts_.models[id]; }
     [[nodiscard]] const Model& model(ModelId id) const noexcept { return parts_.models[id]; }
     [[nodiscard]] std::uint32_t model_count() const noexcept { return parts_.models.size(); }
-    /// Shared data of the models; slots, queues and links are used by the transport thread, too.
+    /// Shared pools of the models; the transport thread uses their slots, queues and links, too.
     [[nodiscard]] ModelPools& pools() noexcept { return parts_.pools; }
 
     struct PassKey

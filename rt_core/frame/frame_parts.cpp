@@ -15,11 +15,11 @@ namespace tactus
 namespace
 {
 
-/// Approximate number of faces under a body that the work of a frame at 1 kHz allows.
+/// Number of faces under a tool that the work of a frame at 1 kHz allows, approximately.
 constexpr double kFewFaces = 0.25 * kMaxLocalTriangles;
 
-/// True if a body on the model covers more faces than kFewFaces, assuming that they are spread
-/// evenly over the sides of its box. With a tolerance such a model isn't refined as a whole.
+/// True if a tool on the model covers more than kFewFaces faces, assuming that they are spread
+/// evenly over the sides of its box. With a force tolerance, such a model isn't refined as a whole.
 bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header) noexcept
 {
     if (setup.force_tolerance_n == 0.0)
@@ -53,8 +53,8 @@ bool is_too_fine(const FrameSetup& setup, ModelId id, const ModelHeader& header)
         });
 }
 
-/// Copies the header, reads the base mesh and lays out one model. False if the base mesh is
-/// damaged. The header must parse.
+/// Copies the header, reads the base mesh and makes one model. False if the base mesh is damaged.
+/// The header must parse.
 [[nodiscard]] bool try_take_model(std::optional<Model>& model, Arena& arena, ModelPools& pools,
                                   ModelId id, const FrameSetup& setup) noexcept
 {

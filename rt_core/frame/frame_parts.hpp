@@ -15,12 +15,12 @@
 namespace tactus
 {
 
-/// Data of a frame's stages: tools, objects, their models, and the pairs of both. Does not move,
-/// since pairs point at the other parts. Haptic thread.
+/// Data that all stages of a frame share: tools, objects, models, and the pairs of tools and
+/// objects. Must not move, since pairs point at the other parts. Haptic thread.
 struct FrameParts
 {
-    /// Reads base meshes and takes memory for all parts; the set-up must be valid. `models` has
-    /// fewer models than the set-up if a base mesh is damaged, and none if the arena only measures.
+    /// Reads base meshes and takes memory for all parts; the set-up must be valid. `models` is
+    /// shorter than in the set-up if a base mesh is damaged, and empty if the arena only measures.
     FrameParts(Arena& arena, const FrameSetup& setup) noexcept;
 
     PairRules rules;
@@ -31,14 +31,15 @@ struct FrameParts
     AwakePairs pairs;
 };
 
-/// Limits, work and results of one frame so far. Haptic thread.
+/// Limits, work and results of the present frame. Haptic thread.
 struct FrameAccount
 {
     Budgets budgets;
     WorkShares shares;
     WorkCounters work;
     FrameFault faults{FrameFault::none};
-    SceneOutput scene; ///< Starts with the last frame's values, which a frame at rest keeps.
+    /// Output on the scene; keeps the last frame's values until a stage replaces them.
+    SceneOutput scene;
 
     void begin(const Budgets& given) noexcept TACTUS_NONBLOCKING
     {

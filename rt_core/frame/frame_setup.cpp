@@ -15,9 +15,9 @@ const char* refusal_text(FrameRefusal refusal) noexcept
     switch (refusal)
     {
     case FrameRefusal::too_many:
-        return "there are too many tools, objects, pairs or models, or no tool or model";
+        return "too many tools, objects, pairs or models, or no tool or model";
     case FrameRefusal::too_many_faces:
-        return "the pools have room for more faces than can be told apart";
+        return "the pools have room for too many faces";
     case FrameRefusal::unknown_model:
         return "an object or a tool names a model that is not loaded";
     case FrameRefusal::shared_model:
@@ -27,11 +27,11 @@ const char* refusal_text(FrameRefusal refusal) noexcept
     case FrameRefusal::base_refused:
         return "a model's base mesh is damaged";
     case FrameRefusal::bad_tolerance:
-        return "the force tolerance is no number from 0 to 0.1 N";
+        return "the force tolerance is not in 0 .. 0.1 N";
     case FrameRefusal::memory_too_small:
         return "the pools are too small for the models";
     }
-    return "the frame can't be made";
+    return "the frame can't be created";
 }
 
 ModelCapacities pool_capacities(const FrameSetup& setup) noexcept
@@ -68,7 +68,7 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     }
     const double tolerance_n = setup.force_tolerance_n;
     const bool is_taken = tolerance_n >= 0.0 && tolerance_n <= kForceToleranceMax_n;
-    if (!is_taken) // NaN is refused, too.
+    if (!is_taken) // The negated form refuses NaN, too.
     {
         return FrameRefusal::bad_tolerance;
     }

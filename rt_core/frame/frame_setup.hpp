@@ -13,64 +13,67 @@
 #include <optional>
 #include <span>
 
-// Any thread: Frame::start() reads it on the one that calls it. No call waits or allocates.
+// Usable on any thread: that which calls Frame::start(). No call waits or allocates.
 namespace tactus
 {
 
-/// One model: bytes of its header and base mesh, and its pool sizes.
+/// Model of a frame: bytes of its header and base mesh, and its pool sizes.
 struct ModelSource
 {
-    std::span<const std::byte> header; ///< Copied; hashes are not verified.
-    /// Coded; read once. Empty for a streamed model, which is loaded when a tool is near and
-    /// removed again; needs `for_streamed_models`.
+    std::span<const std::byte> header; ///< Bytes of the header; copied, hashes are not verified.
+    /// Coded base mesh, read once. Empty for a streamed model, which is loaded when a tool is near
+    /// and removed again; it needs `for_streamed_models`.
     std::span<const std::byte> base;
-    ModelCapacities capacities; ///< Unused for a streamed model.
+    ModelCapacities capacities; ///< Pool sizes; unused for a streamed model.
 };
 
-/// Capacities of a scene. 0: the size of the set-up.
+/// Capacities of a scene; a value of 0 takes the size from the set-up.
 struct SceneCapacities
 {
-    /// Objects at once; at most kMaxObjects, at least those of the set-up.
+    /// Largest number of objects at once; at most kMaxObjects, at least those of the set-up.
     std::uint32_t objects{0};
-    /// Pairs, at most kMaxPairs; 0: each tool with each object, up to kMaxPairs.
+    /// Largest number of pairs, at most kMaxPairs. 0: one for each tool and object, up to
+    /// kMaxPairs.
     std::uint32_t pairs{0};
 };
 
-/// Parts of a frame. `models[object.model]` must exist for every object; a tool that is a mesh
-/// needs a model that no object shows: FrameRefusal. Materials, poses and tools are not checked
-/// here; they must be in the ranges of a SceneChange and of ToolSpec. The spans are read during
-/// Frame::start() only.
+/// Parts of a frame. Each object's model must exist, and a mesh tool needs a model that no object
+/// shows; otherwise Frame::start() refuses. Materials, poses and tools are not checked: they must
+/// be in the ranges of SceneChange and ToolSpec. The spans are read during Frame::start() only.
 struct FrameSetup
 {
     std::span<const ModelSource> models;
     /// Objects at start, by their numbers, with generation 0.
     std::span<const ObjectSpec> objects;
-    /// Pose of each of them; missing ones are those of the source mesh.
+    /// Poses of these objects; missing ones are the source mesh's own pose.
     std::span<const ObjectPose> poses;
     std::span<const ToolSpec> tools; ///< All tools that can exist; all are present at start.
     SceneCapacities capacities;
     /// Additional pool capacities, for streamed models.
     ModelCapacities for_streamed_models;
-    std::int64_t period_ns{1'000'000};         ///< Above 0, asserted by run().
-    std::int64_t pose_age_max_ns{100'000'000}; ///< Older poses make answers stale.
+    std::int64_t period_ns{1'000'000};         ///< Period of the loop; above 0, asserted by run().
+    std::int64_t pose_age_max_ns{100'000'000}; ///< Age of a pose above which answers are stale.
     /// Load and refine a model fully, once, if it fits its pools (static mode).
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
-    /// Largest change of a force by coarse faces that count as the surface; their error is then at
-    /// most a quarter of a quantum. More if pools or budgets don't suffice (SurfaceTolerance). 0:
-    /// exact faces only. Not for tools that are meshes.
+    /// Largest change of a force by coarse faces that count as the surface, of which the error is
+    /// then at most a quarter of a quantum. The change is larger if pools or budgets don't suffice
+    /// (SurfaceTolerance). 0: exact faces only. Not for mesh tools.
     double force_tolerance_n{0.0};
-    FrameVariant variant;            ///< Default: the shipped frame.
-    const Kernels* kernels{nullptr}; ///< Null: best_kernels(). Must outlive the frame.
+    FrameVariant variant; ///< Switches for measurements; the default is the shipped frame.
+    /// Kernels for the queries, which must outlive the frame; null: best_kernels().
+    const Kernels* kernels{nullptr};
 };
 
 /// Reasons for which a frame is refused.
 enum class FrameRefusal : std::uint8_t
 {
-    too_many,       ///< More tools, objects, pairs or models than limits.hpp allows, no tool or
-                    ///< no model, or more objects than SceneCapacities allows.
+    /// No tool or no model, or more tools, models, objects or pairs than limits.hpp and
+    /// SceneCapacities allow.
+    too_many,
     too_many_faces, ///< The models bring more than kMaxPoolFaces.
-    /// An object or a tool names a model that does not exist, or a tool names a streamed one.
+                    /// An object or a tool names a model that does not exist, or a tool names a
+                    /// streamed one.
     unknown_model,
     shared_model,     ///< A tool names a model that an object shows.
     header_refused,   ///< A model's header did not pass its checks.
@@ -79,7 +82,7 @@ enum class FrameRefusal : std::uint8_t
     memory_too_small, ///< The memory is less than required_bytes().
 };
 
-/// One line for the user; static.
+/// One line for the user on the reason; a static string.
 [[nodiscard]] const char* refusal_text(FrameRefusal refusal) noexcept;
 
 /// True if a model of the set-up is streamed.
@@ -91,10 +94,10 @@ enum class FrameRefusal : std::uint8_t
 /// Sum of all models' capacities and those for streamed models.
 [[nodiscard]] ModelCapacities pool_capacities(const FrameSetup& setup) noexcept;
 
-/// Capacities with defaults replaced.
+/// Capacities of the set-up's scene, with each 0 replaced by its default.
 [[nodiscard]] SceneCapacities capacities_of(const FrameSetup& setup) noexcept;
 
-/// Reason for a refusal that shows before the frame is made; none if there is none.
+/// Reason to refuse a set-up that shows before the frame is made; none if there is none.
 [[nodiscard]] std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept;
 
 } // namespace tactus

@@ -11,28 +11,27 @@
 namespace tactus
 {
 
-/// The two fronts of the 3DIM 2005 paper, region by region, for reports and tests. A record belongs
-/// to the region of the header's regular partition that holds its vertex, so each record has
-/// exactly one.
+/// Counts of the two fronts of the 3DIM 2005 paper, for reports and tests. Each record belongs to
+/// one region: the cell of the model's regular partition that holds its vertex.
 ///
-/// Every function visits each record of each adopted page once: about 10 ns a record, 1 ms for
-/// 1,600 pages. Not for use within a frame. Haptic thread, or any thread while no frame runs.
+/// The functions below visit each record of each adopted page: about 10 ns a record, 1 ms for 1,600
+/// pages. Not for use within a frame. Haptic thread, or any thread while no frame runs.
 struct FrontCount
 {
     std::uint32_t loaded{0};  ///< Linked records of adopted pages.
     std::uint32_t refined{0}; ///< Records that are split; all of them are loaded.
 };
 
-/// Counts of both fronts over the whole model.
+/// Counts both fronts in the whole model, or in one region.
 [[nodiscard]] FrontCount count_fronts(const Model& model) noexcept;
 [[nodiscard]] FrontCount count_fronts(const Model& model, RegionId region) noexcept;
 
-/// Writes the region's split records into `out`, as many as fit, in the order of page slots.
-/// Returns their total; more than `out.size()` means that the list is truncated.
+/// Writes the split records of the region into `out`, as many as fit, in the order of page slots.
+/// Returns their total; if it is above `out.size()`, the list is truncated.
 std::uint32_t list_refined_front(const Model& model, RegionId region,
                                  std::span<RecordId> out) noexcept;
 
-/// The same for loaded records.
+/// list_refined_front() for the loaded records.
 std::uint32_t list_loaded_front(const Model& model, RegionId region,
                                 std::span<RecordId> out) noexcept;
 

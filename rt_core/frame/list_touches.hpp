@@ -12,10 +12,10 @@
 namespace tactus
 {
 
-/// Lists objects that tools may touch, as the last frame left both, objects in reach first. Objects
-/// count that may be touched within ObjectSpeedLimit::kPatience_s, or by a displacement that is not
-/// yet a jump (Tool::leap_m()). Tools without a force are skipped. `pairs` are that frame's output.
-/// Haptic thread, between frames.
+/// Lists the objects that tools may touch, as of the last frame, objects in reach first. An object
+/// counts if it may be touched within ObjectSpeedLimit::kPatience_s, or by a displacement that is
+/// not yet a jump (Tool::leap_m()). Tools without a force are skipped. `pairs` are the last frame's
+/// output. Haptic thread, between frames.
 void list_touches(const Frame& frame, std::span<const PairOutput> pairs,
                   const ObjectSpeedLimit& belief,
                   ObjectTouches& touches) noexcept TACTUS_NONBLOCKING;

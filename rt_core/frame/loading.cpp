@@ -8,7 +8,7 @@ namespace tactus
 namespace
 {
 
-/// Wakes the models of all pairs.
+/// Marks the models of all pairs as having a pair in this frame.
 void wake_models(FrameParts& parts, WorkCounters& work) noexcept
 {
     ModelSet& models = parts.models;

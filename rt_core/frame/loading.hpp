@@ -23,14 +23,15 @@ public:
     /// Runs the stage; the pairs must be placed and ordered.
     void run(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// The regions of the last run, highest priority first.
+    /// Regions of the last run, highest priority first.
     [[nodiscard]] std::span<const RankedRegion> regions() const noexcept { return ranking_.view(); }
 
 private:
     void rank(std::span<Pair* const> order) noexcept;
 
     RegionRanking ranking_;
-    std::optional<ModelLife> life_; ///< None without capacity for streamed models.
+    /// Life cycle of streamed models; none without capacity for them.
+    std::optional<ModelLife> life_;
 };
 
 } // namespace tactus

@@ -15,22 +15,23 @@ namespace tactus
 namespace
 {
 
-/// Distance within which faces are exact for any tool radius, as a share of the tool's size:
-/// surfaces that slide along each other part and meet in every frame.
+/// Least distance from the other surface within which faces are exact, as a share of the tool's
+/// size: surfaces that slide along each other part and meet in every frame.
 constexpr double kLeastReach = 0.002;
-/// Number of frames of tool motion that refinement covers beyond the reach. Along a surface it
-/// covers the approach during a contact's refinement instead, by no more than the reach. A front
-/// that wide is certified without a search.
+/// Number of frames of tool motion that refinement covers beyond the reach; along a surface it
+/// covers the whole approach instead, by at most the reach. While the motion is within this range,
+/// certificates hold without a search.
 constexpr double kFramesAhead = 4.0;
-/// Least share of the reach beyond the radius within which touches are searched: with less, a tool
-/// runs into unknown surface beside it.
+/// Least share of the reach beyond the radius within which contacts are searched. With less, a tool
+/// would run into unknown surface beside it.
 constexpr double kLeastOfReach = 0.25;
-/// Period of the cover for prefetching, in frames at least. A new cover is needed after a motion by
-/// kCoverMoved of its distance, or if that distance grows or shrinks below kCoverShrunk.
+/// Least number of frames between two covers for prefetching. A cover is renewed if the tool has
+/// moved by kCoverMoved of the cover's distance, or if that distance has grown or shrunk below
+/// kCoverShrunk.
 constexpr std::uint32_t kCoverFrames = 8;
 constexpr double kCoverMoved = 0.1;
 constexpr double kCoverShrunk = 0.8;
-/// Prefetch horizon, in units of RegionOfInterest::approach_m().
+/// Prefetch distance beyond the reach, as a multiple of RegionOfInterest::approach_m().
 constexpr double kPrefetchAhead = 4.0;
 
 WalkBudget budget_of(const Budgets& budgets, WorkBudget& frame, std::uint32_t factor,
@@ -42,7 +43,7 @@ WalkBudget budget_of(const Budgets& budgets, WorkBudget& frame, std::uint32_t fa
     return budget;
 }
 
-/// Spheres of a cover. If there are too many, one grows.
+/// Collects the spheres of a cover. If there are too many, one grows to hold the new sphere.
 class Cover
 {
 public:
@@ -63,7 +64,7 @@ public:
     [[nodiscard]] const CoreCover& spheres() const noexcept { return spheres_; }
 
 private:
-    /// Growth of a sphere that is to hold another one.
+    /// Growth of the radius of `grown` if it is to hold `added`; negative if it does already.
     [[nodiscard]] static double growth(const Sphere& grown, const Sphere& added) noexcept
     {
         return (grown.center - added.center).norm() + added.radius - grown.radius;
@@ -72,7 +73,7 @@ private:
     CoreCover spheres_;
 };
 
-/// Spheres of a model's frame that hold all its faces within `near_m` of another surface.
+/// Spheres, in a model's frame, that hold all of its faces within `near_m` of another surface.
 CoreCover cover_near(const AbTree& tree, OtherSurface& other, double near_m) noexcept
 {
     Cover cover;
@@ -114,8 +115,8 @@ void MeshPair::place(const RegionOfInterest& region_of_interest, const MeshCore&
     see_surfaces(budgets, frame);
 }
 
-/// The cores stay, since motion since the last frame is measured from them. Only the first place
-/// moves.
+/// Only the first place moves. The cores stay, as the motion since the last frame is measured from
+/// them.
 void MeshPair::move(const Similarity& tool, const Budgets& budgets, WorkBudget& frame) noexcept
 {
     const MeshPlacement before = placements_[0];
@@ -125,7 +126,7 @@ void MeshPair::move(const Similarity& tool, const Budgets& budgets, WorkBudget& 
     see_surfaces(budgets, frame);
 }
 
-/// Adapts the searches to their use of the last frame's allowance.
+/// Adapts the allowance of refining searches to its use in the last frame.
 void MeshPair::fit_searches() noexcept
 {
     note_use();
@@ -156,7 +157,7 @@ void MeshPair::note_use() noexcept
     }
 }
 
-/// Sets up the surfaces, each with a whole allowance.
+/// Sets up the surfaces for this frame's searches, each with a whole allowance.
 void MeshPair::see_surfaces(const Budgets& budgets, WorkBudget& frame) noexcept
 {
     const WalkBudget to_refine = budget_of(budgets, frame, kMeshRefineFactor, search_parts_);
@@ -221,8 +222,9 @@ double MeshPair::ahead_m(std::size_t place,
                     refine_reach_m(region_of_interest));
 }
 
-/// Question about the place where two faces meet and its surroundings of a few frames. Exact faces
-/// in the tool's sphere stay. `scale` converts lengths from this frame to the object's.
+/// Question about the place where two faces meet, with its surroundings for a few frames of motion.
+/// Exact faces in the tool's sphere stay exact. `scale` converts lengths of the question's frame to
+/// the object's.
 RefineQuestion MeshPair::about_meeting(const Vec3& center_m, double radius_m, double scale,
                                        RefineMemory& memory) const noexcept
 {
@@ -260,7 +262,8 @@ RefineQuestion MeshPair::ask_tool(std::size_t place,
                     objects_[place], memory, place == 0 ? &of_tool_ : nullptr);
 }
 
-/// Question about the faces in a sphere within `reach_m` of a surface, in the sphere's frame.
+/// Question about the faces of a sphere that are within `reach_m` of another surface, in the
+/// sphere's frame.
 RefineQuestion MeshPair::question(const Sphere& sphere, double reach_m, double moved_m,
                                   double ahead_m, OtherSurface& surface, RefineMemory& memory,
                                   UnfinishedSearch* unfinished) noexcept
@@ -343,7 +346,8 @@ void MeshPair::rest(ContactReport& contacts) noexcept
     contacts.is_complete = true;
 }
 
-/// A truncated cover has larger spheres.
+/// Adds the work of all surfaces' searches. A cut search for the cover is no fault: the cover's
+/// spheres are only larger.
 void MeshPair::add_work(WorkCounters& work, FrameFault& faults) noexcept
 {
     const auto add = [&](OtherSurface& surface, bool lacks_some)

@@ -16,39 +16,40 @@
 namespace tactus
 {
 
-/// Additional data of a pair whose tool is a mesh: two surfaces, each refined by its distance from
-/// the other.
+/// Additional data of a pair whose tool is a mesh: each of the two surfaces is refined by its
+/// distance from the other.
 ///
-/// Everything exists for two places of the tool: its present one, and the one where it will be when
-/// a contact can be refined. Haptic thread. 18 KiB.
+/// Most data exist for two places of the tool: the present one, and the one expected when a contact
+/// could be refined. Haptic thread. 18 KiB.
 class MeshPair
 {
 public:
     static constexpr std::size_t kPlaces = 2;
 
-    /// Updates the pair for this frame: both models' boxes must be right, and `tool` is the tool's
-    /// pose in the object's frame. Searches draw on the frame's work.
+    /// Updates the pair for this frame. The boxes of both models' trees must be refitted. `tool` is
+    /// the tool's pose in the object's frame; `frame` is the budget that pays for the searches.
     void place(const RegionOfInterest& region_of_interest, const MeshCore& core,
                const Model& tool_model, const Model& object_model, const Similarity& tool,
                const Budgets& budgets, WorkBudget& frame) noexcept TACTUS_NONBLOCKING;
 
-    /// Moves the tool on in the same frame, for another query.
+    /// Moves the tool to a new pose in the same frame, for another query.
     void move(const Similarity& tool, const Budgets& budgets,
               WorkBudget& frame) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the regions of both models where the surfaces are near.
+    /// Adds the regions of both models where the two surfaces are near to the ranking.
     void rank(const RegionOfInterest& region_of_interest, ModelId tool_model, ModelId object_model,
               const RegionPredictor& predictor, Prediction prediction,
               RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
 
-    /// True if the last query ended with a pair of faces that meet. The force waits until no faces
-    /// meet, so only the surroundings of that pair must be exact.
+    /// True if the last query ended at a pair of faces that meet. The tool has no force until no
+    /// faces meet, so only the surroundings of that pair must be exact.
     [[nodiscard]] bool is_meeting() const noexcept { return is_meeting_; }
-    /// True if the tool is at a surface and approaches by no more than is refined beyond the reach
-    /// there: its future place needs no questions.
+    /// True if the tool is near a surface and approaches by no more than the reach of refinement:
+    /// then its future place needs no questions.
     [[nodiscard]] static bool
     goes_along(const RegionOfInterest& region_of_interest) noexcept TACTUS_NONBLOCKING;
-    /// Question to the object's model for one of the places; below, to the tool's.
+    /// Question to the object's model for one of the two places; ask_tool() is that to the tool's
+    /// model.
     [[nodiscard]] RefineQuestion ask_object(std::size_t place,
                                             const RegionOfInterest& region_of_interest,
                                             RefineMemory& memory) noexcept TACTUS_NONBLOCKING;
@@ -56,38 +57,39 @@ public:
     ask_tool(std::size_t place,
              const RegionOfInterest& region_of_interest) noexcept TACTUS_NONBLOCKING;
 
-    /// Distance from the other surface that this frame's refinement proves for all inexact faces,
-    /// from the first place's questions; `of_object` is the object's memory. In the object's frame;
-    /// 0 if nothing is proven.
+    /// Lower bound, in the object's frame, on the distance of any inexact face from the other
+    /// surface, as this frame's refinement proves it; 0 if nothing is proven. `of_object` is the
+    /// memory of the object's question about the first place.
     [[nodiscard]] double
     certified_m(const RefineMemory& of_object) const noexcept TACTUS_NONBLOCKING;
 
-    /// Lends memory that queries keep from frame to frame, or null, and returns the previous one.
+    /// Lends memory that queries keep from frame to frame; null takes it back. Returns the previous
+    /// one.
     PairFront* exchange_front(PairFront* front) noexcept { return std::exchange(front_, front); }
 
-    /// Distance up to which contacts are searched: the reach, or after a truncated query the radius
-    /// and a part of the reach beyond it.
+    /// Distance within which contacts are searched: the reach, or a part of it beyond the radius
+    /// after a truncated query.
     [[nodiscard]] double touch_m(double radius_m, double reach_m) const noexcept TACTUS_NONBLOCKING;
-    /// Queries in the object's frame; contacts within `contact_m`, none if negative. `enough`
-    /// meeting pairs end the search. `ends` may be null, and `certified_m` is as above.
+    /// Queries distance, meeting faces and contacts, in the object's frame. Contacts are within
+    /// `contact_m`, none if negative. `enough` meeting pairs end the search. `ends` may be null;
+    /// `certified_m` is the result of certified_m().
     void query(const RegionOfInterest& region_of_interest, double certified_m, double contact_m,
                std::uint32_t enough, ContactEnds* ends, DistanceAnswer& answer,
                ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
-    /// Records a lower bound on the distance from the last query and those before it.
+    /// Records a lower bound on the distance; above 0 proves that no faces meet.
     void note_lower(double lower_m) noexcept TACTUS_NONBLOCKING;
-    /// Replaces a query while the pair is proven apart.
+    /// Sets the report of a pair that is proven apart, without a query.
     void rest(ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the work of all searches since place().
+    /// Adds the work and faults of all searches since place().
     void add_work(WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
 
 private:
-    /// Number of parts of its allowance of which a refining search first uses one. If that was too
-    /// little, the next frame allows kSearchGrowth times as much, so that the search ends if
-    /// nothing is to be split.
+    /// Divisor of a refining search's allowance at first. If a search is cut, the next frame's
+    /// allowance is kSearchGrowth times as large, so that a search ends if nothing is to be split.
     static constexpr std::uint32_t kSearchParts = 32;
     static constexpr std::uint32_t kSearchGrowth = 4;
 
@@ -107,40 +109,44 @@ private:
 
     const Model* tool_model_{nullptr};
     const Model* object_model_{nullptr};
-    /// Motion in this frame since the first place was refined.
+    /// Motion of the tool in this frame since refinement asked about the first place.
     double moved_on_m_{0.0};
-    /// Poses of the tool's model in the object's frame.
+    /// Placements of the tool's model in the object's frame, one for each place.
     std::array<MeshPlacement, kPlaces> placements_{};
     std::array<PlacedCore, kPlaces> cores_{};
-    /// Motion since the last frame, in the object's frame.
+    /// Motion of the tool since the last frame, in the object's frame.
     std::array<double, kPlaces> moved_m_{};
-    /// Object, for refining the tool's model.
+    /// Surface of the object, for refining the tool's model.
     std::array<OtherSurface, kPlaces> objects_{};
-    /// Tool, for refining the object's model.
+    /// Surface of the tool, for refining the object's model.
     std::array<OtherSurface, kPlaces> tools_{};
-    OtherSurface covered_; ///< Object, for the cover.
-    OtherSurface queried_; ///< Object, for the query.
+    OtherSurface covered_; ///< Surface of the object, for the cover.
+    OtherSurface queried_; ///< Surface of the object, for the query.
     std::array<RefineMemory, kPlaces> tool_memories_{};
-    UnfinishedSearch of_object_; ///< Search for the first place, which is needed now.
+    /// Rest of a cut search in the object's model, for the first place.
+    UnfinishedSearch of_object_;
     UnfinishedSearch of_tool_;
-    Sphere own_sphere_; ///< Sphere round the tool's model, in its frame.
-    /// Last cover of the tool's model near the object.
+    Sphere own_sphere_; ///< Bounding sphere of the tool's model, in the model's frame.
+    /// Spheres that held the tool's faces near the object when last computed.
     CoreCover cover_;
-    double cover_moved_m_{0.0}; ///< Motion of the tool since then.
+    double cover_moved_m_{0.0}; ///< Motion of the tool since cover_ was computed.
     std::uint32_t frames_until_cover_{0};
     MeshMemory memory_;
     bool is_meeting_{false};
-    /// Questions of this frame are about the meeting faces only.
+    /// True if this frame's questions are about the meeting faces only.
     bool asks_about_meeting_{false};
-    bool asks_otherwise_{false};    ///< Differs from the last frame.
-    Vec3 meeting_m_{0.0, 0.0, 0.0}; ///< Meeting point in the object's frame.
-    PairFront* front_{nullptr};     ///< Null while other pairs have higher priority.
+    bool asks_otherwise_{false};    ///< True if asks_about_meeting_ differs from the last frame's.
+    Vec3 meeting_m_{0.0, 0.0, 0.0}; ///< Meeting point of two faces, in the object's frame.
+    /// Front lent to this pair; null while other pairs have higher priority.
+    PairFront* front_{nullptr};
     MeshReport report_;
-    /// Divisor of the allowance of refining searches.
+    /// Divisor of the allowance of refining searches, 1 .. kSearchParts.
     std::uint32_t search_parts_{kSearchParts};
-    bool were_cut_short_{false};   ///< A search of this frame was truncated.
-    bool were_far_from_cut_{true}; ///< All searches used little of their allowance.
-    double cover_near_m_{0.0};     ///< Distance that the cover includes.
+    bool were_cut_short_{false}; ///< True if a refining search of this frame was cut.
+    /// True if each search used at most 1 / kSearchGrowth of its allowance.
+    bool were_far_from_cut_{true};
+    /// Distance from the object within which cover_ holds the tool's faces.
+    double cover_near_m_{0.0};
 };
 
 } // namespace tactus

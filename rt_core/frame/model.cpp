@@ -10,27 +10,28 @@ namespace tactus
 namespace
 {
 
-/// Default share of the memory for pages and their link data, in percent. A page is mostly
-/// prefetched, an active face costs two thirds of a record.
+/// Default share of the memory for pages and their link data, in percent. Most pages are
+/// prefetched; an active face costs two thirds of a record.
 constexpr std::size_t kPageShare = 72;
 /// Index pages beyond the least number get at most 1 / kIndexPageShare of the memory.
 constexpr std::size_t kIndexPageShare = 64;
-/// Least number of active faces beyond the base mesh that is worth starting with.
+/// Least number of active faces, besides those of base meshes, for a useful plan.
 constexpr std::uint32_t kMinFaces = 256;
 
 /// Time from the arrival of chunks to a certified surface: a few frames after a jump at 1.1 M
-/// faces. Requested chunks have to arrive this much before the tool.
+/// faces. Chunks must arrive this long before the tool.
 constexpr double kRefineTime_s = 0.008;
-/// Limit of the prediction of a user's motion.
+/// Longest time for which a user's motion is predicted.
 constexpr double kLongestHorizon_s = 0.15;
 
-/// Blocks are about two thirds full, so 11 faces; twice that many for thin cuts.
+/// Number of blocks for `faces` faces: blocks are about two thirds full, so 11 faces, and thin cuts
+/// need twice as many blocks.
 std::uint32_t blocks_for(std::uint32_t faces) noexcept
 {
     return faces / 8 + 2 * AbTree::kReserve;
 }
 
-/// Capacities with this number of faces, and the tree's sizes that follow.
+/// Returns `capacities` with this number of faces, and the blocks and nodes that follow from it.
 ModelCapacities with_faces(ModelCapacities capacities, std::uint32_t faces) noexcept
 {
     capacities.faces = faces;
@@ -44,7 +45,8 @@ TreeCapacities tree_part(const ModelCapacities& capacities) noexcept
     return {capacities.faces, capacities.blocks, capacities.nodes};
 }
 
-/// Divisor of a partial model's reserved capacity beyond its base mesh.
+/// Divisor of a model's capacity beyond its base mesh that gives its reserved part, unless the
+/// whole model fits.
 constexpr std::uint32_t kKeptPart = 4;
 
 bool brings_all(const ModelCounts& counts, const ModelCapacities& capacities) noexcept
@@ -53,7 +55,7 @@ bool brings_all(const ModelCounts& counts, const ModelCapacities& capacities) no
            capacities.faces >= counts.face_ids();
 }
 
-/// Capacities that are reserved for the model.
+/// Part of a model's capacities that is reserved for it.
 ModelCapacities kept_for(const ModelHeader& header, const ModelCapacities& capacities) noexcept
 {
     const ModelCounts counts = header.counts();
@@ -72,8 +74,8 @@ ModelCapacities kept_for(const ModelHeader& header, const ModelCapacities& capac
     return kept;
 }
 
-/// Divides `all` evenly, at most `most_of` for each model; capacity that one model does not need
-/// goes to the others. Returns the rest.
+/// Adds `all` units to `part` of the models evenly, up to `most_of(i)` for each; what one model
+/// does not need goes to the others. Returns the rest.
 template <typename MostOf>
 std::uint32_t divide(std::uint32_t all, std::span<ModelCapacities> models,
                      std::uint32_t ModelCapacities::*part, const MostOf& most_of) noexcept
@@ -200,7 +202,8 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
     };
     const std::uint32_t least_more = (kMinFaces + count - 1) / count;
     std::uint32_t pages = share_pages(fitting);
-    if (cache_bytes == 0 && !plan_faces(least_more)) // Leaves memory for the least faces.
+    // If the default number of pages leaves too little memory for faces, fewer pages are planned.
+    if (cache_bytes == 0 && !plan_faces(least_more))
     {
         std::uint32_t too_many = pages;
         pages = std::min(pages, count);
@@ -309,7 +312,7 @@ void Model::go_on(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t
         {
             cache.open();
             stage = ModelStage::resident;
-            ++revision; // Answers for the former state are outdated.
+            ++revision; // Raises the revision, as answers for the former state are outdated.
         }
     }
 }
@@ -325,7 +328,7 @@ void Model::leave() noexcept
     ++revision;
 }
 
-/// Dissolves the model in steps: faces, a refit, pages, and then its reservation.
+/// Does one step of leaving: the faces, then a refit, then the pages, and at last the reservation.
 void Model::dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& work) noexcept
 {
     if (forest.active_faces() > 0)
@@ -341,7 +344,7 @@ void Model::dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& 
     end_stay();
 }
 
-/// Ends the reservation.
+/// Returns the model's reserved memory: the model is known again.
 void Model::end_stay() noexcept
 {
     forest.end_promise();

@@ -24,30 +24,29 @@
 namespace tactus
 {
 
-/// Pool capacities of one model, in slots: those of try_plan(). Otherwise at least one page, one
-/// index page, and the faces, blocks and nodes of its base mesh, which is asserted for the faces.
+/// Pool capacities of one model, in slots, as try_plan() finds them. Others need at least one page,
+/// one index page, and room for the base mesh's faces (asserted), blocks and nodes.
 struct ModelCapacities
 {
-    std::uint32_t pages{0};       ///< 64 records each: 8 KiB and some tables.
-    std::uint32_t index_pages{0}; ///< 64 influence boxes each.
+    std::uint32_t pages{0};       ///< Pages of 64 records each: 8 KiB and tables.
+    std::uint32_t index_pages{0}; ///< Index pages of 64 influence boxes each.
     std::uint32_t faces{0};       ///< Active faces.
     std::uint32_t blocks{0};      ///< Leaves of the AB-Tree.
     std::uint32_t nodes{0};       ///< Inner nodes of the AB-Tree.
-    /// Cache off: pages are requested only while the refinement waits for records, never ahead of
-    /// need. They are evicted as soon as it waits for none and no record in them is refined. Then
-    /// the refined and the loaded front agree to a page (figure 5 of the 3DIM 2005 paper). For
-    /// measuring the benefit of a cache.
+    /// Cache off, to measure the benefit of the cache. Pages are only requested while refinement
+    /// waits for their records. They are evicted once nothing waits and none of their records is
+    /// refined. Then the two fronts agree to a page (figure 5 of the 3DIM 2005 paper).
     bool cache_off{false};
-    /// Memory for base meshes of streamed models, in cells of a face and a vertex each. Only in
-    /// capacities for all models: FrameSetup::for_streamed_models.
+    /// Memory for base meshes of streamed models, in cells of one face and one vertex. Only used in
+    /// FrameSetup::for_streamed_models.
     std::uint32_t base_cells{0};
 
     constexpr bool operator==(const ModelCapacities&) const noexcept = default;
 };
 
-/// Shared pools of a frame's models: each model adds its capacities and takes what it needs. A
-/// model that adds all that it needs as a whole has that reserved; any other has its base mesh and
-/// a quarter of its further capacities reserved.
+/// Pools that the models of a frame share: each model adds its capacities and takes what it needs.
+/// A model that adds enough for all of itself has that reserved. Others have their base mesh and a
+/// quarter of their further capacities reserved.
 struct ModelPools
 {
     /// Pools with the capacities `all` for `models` models.
@@ -56,38 +55,39 @@ struct ModelPools
     RefineScratch scratch;
     FacePool faces;
     TreePool tree;
-    PageSlots slots;    ///< The base mesh is the memory for streamed models.
-    BaseRoom base_room; ///< Taken cells of that memory.
+    /// Slots of pages and index pages; the base mesh is the memory for all streamed models.
+    PageSlots slots;
+    BaseRoom base_room; ///< Cells of that base mesh that are in use.
     CachePool cache;
-    /// Used by the transport thread, like the other ends of the cache's queues.
+    /// Data of the linkers, for the transport thread only.
     LinkPool links;
 };
 
 /// Sum of each capacity over the models.
 [[nodiscard]] ModelCapacities sum_of(std::span<const ModelCapacities> each) noexcept;
 
-/// Bytes that models of these capacities, one each (asserted), take from the arena: tables, and
-/// their pool capacities. At start-up, like the functions below.
+/// Bytes that models of these capacities take from the arena, for tables and pools. One of
+/// `capacities` for each header (asserted). Called at start-up, like the functions below.
 [[nodiscard]] std::size_t required_bytes(std::span<const ModelHeader> headers,
                                          std::span<const ModelCapacities> capacities) noexcept;
 
-/// Pool capacities for streamed models: base meshes of `cells` in all, `meshes` of them at once,
-/// half of all faces for those, and pages for their touched parts.
+/// Pool capacities for streamed models: `cells` for all base meshes, `meshes` of them at once, as
+/// many faces again for refinement, and pages.
 [[nodiscard]] ModelCapacities streamed_model_room(std::uint32_t meshes, std::uint32_t cells,
                                                   std::uint32_t pages,
                                                   std::uint32_t index_pages) noexcept;
 
-/// Plans the capacities of up to kMaxModels models that fit into `bytes`: `cache_bytes` of them for
-/// pages (0: the default share), the rest for active faces and the tree. All models get the same
-/// beyond their base meshes, but no more than the whole model needs. False if base meshes and a few
-/// pages do not fit; `capacities` are then invalid. Tries up to about 50 sizes, each in time linear
-/// in the models.
+/// Plans capacities of models that fit into `bytes`, of which `cache_bytes` are for pages (0: the
+/// default share), and the rest for active faces and the tree. All models get the same beyond their
+/// base meshes, but no more than the whole model needs. False, with `capacities` invalid, if base
+/// meshes and a few pages do not fit. Tries up to about 50 sizes, each in time linear in the
+/// models.
 /// - `headers` and `capacities` have the same size, 1 to kMaxModels (asserted).
 [[nodiscard]] bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes,
                             std::size_t cache_bytes,
                             std::span<ModelCapacities> capacities) noexcept;
 
-/// The same for one model; `pages` is 0 if it does not fit.
+/// try_plan() for one model; `pages` is 0 if it does not fit.
 [[nodiscard]] inline ModelCapacities plan_capacities(const ModelHeader& header, std::size_t bytes,
                                                      std::size_t cache_bytes) noexcept
 {
@@ -96,22 +96,24 @@ struct ModelPools
     return fits ? capacities : ModelCapacities{};
 }
 
-/// Resident share of a model.
+/// Part of a model that is resident.
 enum class Residence : std::uint8_t
 {
-    partial,  ///< The parts that the tools need.
-    filling,  ///< Loading towards `complete`.
-    complete, ///< All of it, refined fully: nothing is left to load, refine or refit (static mode).
+    partial, ///< The parts that tools need are resident.
+    filling, ///< The model is loading towards `complete`.
+    /// All of the model is resident and refined: nothing is left to load, refine or refit (static
+    /// mode).
+    complete,
 };
 
-/// One model's forest, tree, cache and front, in the model's frame, refined for the union of its
-/// objects' tools' needs. Everything is the haptic thread's except `linker`, the transport
-/// thread's. Does not move: its parts point at one another.
+/// Forest, tree, cache and fronts of one model, in the model's frame, refined for all tools at its
+/// objects. The haptic thread uses all of it except `linker`, which is the transport thread's. Must
+/// not move: its parts point at one another.
 struct Model
 {
-    /// `header` views bytes that outlive the model, as the pools do; `base` was parsed for it into
-    /// `slots`, whose pages are the pools'. The id must be unique. A model without a base mesh is
-    /// streamed: known at first, loaded on demand, and removed again.
+    /// `model_header` views bytes that outlive the model, as the pools do. `model_slots` hold its
+    /// parsed base mesh, and the pools' pages. The id must be unique. A model without a base mesh
+    /// is streamed: known at first, loaded when needed, and removed again.
     Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& model_header,
           PageSlots model_slots, const ModelCapacities& model_capacities,
           const Kernels& kernels) noexcept;
@@ -121,58 +123,61 @@ struct Model
     Model& operator=(Model&&) = delete;
     ~Model() = default;
 
-    /// Offers the tree again the faces that had no place in it, and refits it.
+    /// Adds faces that did not fit before to the tree, if possible, and refits the tree.
     void refit(WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// First stage of the frame, after arrivals were adopted: requests missing chunks in the
-    /// ranking's regions of this model.
+    /// Requests missing chunks of the ranking's regions in this model. Part of the load stage,
+    /// after arrivals were adopted.
     void load(ModelId id, const RegionRanking& ranking, const Budgets& budgets, std::uint32_t frame,
               WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
-    /// Present prediction horizon of chunk requests, in seconds > 0.
+    /// Prediction horizon of chunk requests, in seconds > 0: the present load latency plus the time
+    /// to refine.
     [[nodiscard]] double horizon_s(std::int64_t period_ns) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_complete() const noexcept { return residence == Residence::complete; }
     /// True if the model is resident as a whole or loading towards that.
     [[nodiscard]] bool is_whole() const noexcept { return residence != Residence::partial; }
-    /// Ends that state: the model is then refined only as tools need it.
+    /// Ends loading as a whole: the model is then refined only as tools need it.
     void end_whole() noexcept { residence = Residence::partial; }
-    /// True if, after a frame without requests, another one like it would change nothing.
+    /// True if a further frame without requests would change nothing.
     [[nodiscard]] bool is_at_rest() const noexcept
     {
         return is_complete() || stage == ModelStage::known ||
                (is_resident() && residence == Residence::partial && forest.refined_records() == 0 &&
                 tree.is_complete() && cache.requests_under_way() == 0);
     }
-    /// True if its surface answers queries.
+    /// True if the model's surface answers queries.
     [[nodiscard]] bool is_resident() const noexcept { return stage == ModelStage::resident; }
-    /// True if it is known and may be requested; after a failed request it waits a while.
+    /// True if the model is known and may be requested; after a failed request it waits a while.
     [[nodiscard]] bool may_come(std::uint32_t frame) const noexcept
     {
         return stage == ModelStage::known && cache.may_want_base(frame);
     }
-    /// Known -> wanted, with memory for its base mesh reserved; false, with nothing changed, if
-    /// there is none.
+    /// Moves the model from known to wanted and reserves memory for its base mesh. False, with
+    /// nothing changed, if memory is missing.
     [[nodiscard]] bool try_want() noexcept TACTUS_NONBLOCKING;
-    /// One frame of wanted, arriving or leaving: up to `entering` faces enter and `leaving` leave,
-    /// and both are reduced by that. A wanted model whose base mesh doesn't arrive is known again.
+    /// Does one frame's work of a wanted, arriving or leaving model. Up to `entering` faces enter
+    /// and `leaving` faces leave; both are reduced by that. A wanted model whose base mesh does not
+    /// arrive becomes known.
     void go_on(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t frame,
                WorkCounters& work) noexcept TACTUS_NONBLOCKING;
-    /// True if its base mesh may arrive, into cells from `first_cell` on.
+    /// True if the model's base mesh may arrive in the cells from `first_cell` on.
     [[nodiscard]] bool awaits_base(std::uint32_t first_cell) const noexcept
     {
         return stage == ModelStage::wanted && !cache.has_base() && first_cell == first_cell_;
     }
-    /// Resident -> leaving, for a streamed model without pairs, or whose pairs have lost it.
+    /// Moves a streamed model from resident to leaving. It must have no pairs, or pairs that have
+    /// lost it.
     void leave() noexcept TACTUS_NONBLOCKING;
-    /// The state after a frame.
+    /// State of the model after a frame.
     [[nodiscard]] ModelOutput output() const noexcept TACTUS_NONBLOCKING;
-    /// True if all of the model fits at once.
+    /// True if the model's capacities hold all of the model.
     [[nodiscard]] bool fits() const noexcept;
-    /// First of three parts of the refinement. Takes this frame's requests, which must stay until
-    /// its end, and merges records that all of them left behind.
+    /// First part of a refinement: takes this frame's requests, which must stay until its end, and
+    /// merges records that no request needs.
     void begin_refinement(std::span<const RefineRequest> requests, const Budgets& budgets,
                           WorkCounters& work) noexcept TACTUS_NONBLOCKING;
-    /// Second part, after some requests had their splits: refines the whole model, while it is
-    /// filling, until the frame has done `limit` splits.
+    /// Second part, after some requests had their splits: refines a filling model everywhere, until
+    /// the frame has done `limit` splits.
     void fill(std::uint32_t limit, std::uint32_t frame, WorkCounters& work,
               FrameFault& faults) noexcept TACTUS_NONBLOCKING;
     /// Third part: evicts unused pages if the cache is off and no request waits.
@@ -190,30 +195,32 @@ struct Model
     Refiner refiner;
     std::uint32_t pages_used_max{0};
     Residence residence{Residence::partial};
-    bool is_refined{false};    ///< The last refinement left nothing to do.
-    std::uint32_t revision{0}; ///< Changes with each refit that changed something.
+    bool is_refined{false};    ///< True if the last refinement left nothing to do.
+    std::uint32_t revision{0}; ///< Number that grows with each refit that changed something.
     bool is_streamed_model{false};
     ModelStage stage{ModelStage::resident};
 
 private:
     void end_stay() noexcept;
     void dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& work) noexcept;
-    /// True if this frame may request missing chunks of the region.
+    /// True if this frame may request the missing chunks of a region.
     [[nodiscard]] bool may_ask_for(const RankedRegion& region) const noexcept TACTUS_NONBLOCKING;
 
     ModelPools* shared_;
-    /// First cell of a streamed model's base mesh, from wanted to leaving.
+    /// First cell of a streamed model's base mesh in ModelPools::base_room; valid from wanted to
+    /// leaving.
     std::uint32_t first_cell_{0};
 };
 
-/// Data that a frame keeps for a model besides its output.
+/// Slot of a model in ModelSet, with the frame's data about the model.
 struct ModelSlot
 {
     std::optional<Model> model;
-    bool is_busy{false};           ///< This frame updates the model.
-    std::uint32_t paired_frame{0}; ///< Last frame with a pair of the model.
-    std::uint32_t requests{0};     ///< Number of requests in this frame.
-    std::uint32_t requests_end{0}; ///< Their end in the list of all models.
+    bool is_busy{false}; ///< True if frames update the model.
+    /// Number of the last frame in which a pair had the model, or in which the model was added.
+    std::uint32_t paired_frame{0};
+    std::uint32_t requests{0};     ///< Number of refinement requests to the model in this frame.
+    std::uint32_t requests_end{0}; ///< End of these requests in the list that is grouped by model.
 };
 
 } // namespace tactus

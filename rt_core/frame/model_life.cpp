@@ -13,7 +13,7 @@ namespace tactus
 namespace
 {
 
-/// Time that a model stays without a pair, so that it isn't loaded again each time a user goes back
+/// Time that a model stays without a pair, so that it isn't loaded each time that a user goes back
 /// and forth.
 constexpr std::int64_t kLinger_ns = 2'000'000'000;
 
@@ -33,7 +33,8 @@ void ModelLife::go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint3
     {
         Model& model = models[pair->parts().model.id];
         want(models, *pair, frame, turn);
-        // A leaving model is handled below, once a frame: a refit lies between its steps.
+        // The loop below handles leaving models, once a frame, as a refit must lie between their
+        // steps.
         if (model.stage != ModelStage::leaving)
         {
             go_on(model, turn, frame, work);
@@ -60,14 +61,15 @@ void ModelLife::go_on(Model& model, Turn& turn, std::uint32_t frame, WorkCounter
 void ModelLife::want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept
 {
     Model& model = models[pair.parts().model.id];
-    // A model of lower priority doesn't take memory before a waiting one.
+    // Memory is kept for a waiting model of higher priority.
     if (model.may_come(frame) && turn.waits == nullptr && !model.try_want())
     {
         turn.waits = &pair;
     }
 }
 
-/// Checks one model each frame.
+/// Lets one streamed model leave if it has been without a pair for linger_frames_. Each frame
+/// checks one model.
 void ModelLife::let_go(ModelSet& models, std::uint32_t frame) const noexcept
 {
     const ModelId turn{frame % models.size()};
@@ -79,7 +81,7 @@ void ModelLife::let_go(ModelSet& models, std::uint32_t frame) const noexcept
     }
 }
 
-/// Lets one model at a time leave.
+/// Makes the model leave that matters least, unless a model is leaving already.
 void ModelLife::make_room(ModelSet& models, std::span<Pair* const> pairs, const Pair& waits,
                           std::uint32_t frame) noexcept
 {
@@ -108,7 +110,7 @@ void ModelLife::make_room(ModelSet& models, std::span<Pair* const> pairs, const 
     models.keep_busy(*goes);
 }
 
-/// The model without a pair for the longest time.
+/// Finds the streamed model without a pair for the longest time; none if all have one.
 std::optional<ModelId> ModelLife::find_left(const ModelSet& models, std::uint32_t frame) noexcept
 {
     std::uint32_t longest = 0;
@@ -126,21 +128,22 @@ std::optional<ModelId> ModelLife::find_left(const ModelSet& models, std::uint32_
     return left;
 }
 
-/// The model whose highest-priority pair comes last. All its pairs must spare it. The priority of
-/// that pair must be so much lower that the two do not swap at once.
+/// Finds the streamed model whose highest-priority pair comes last. All its pairs must be able to
+/// spare it. Contact must be kLaterContact times as far in time as for `waits`, so that the two do
+/// not swap at once.
 std::optional<ModelId> ModelLife::find_spare(const ModelSet& models, std::span<Pair* const> pairs,
                                              const Pair& waits) noexcept
 {
-    constexpr double kLessUrgent = 2.0;
+    constexpr double kLaterContact = 2.0;
     for (std::size_t i = pairs.size(); i-- > 0;)
     {
         const ModelId id = pairs[i]->parts().model.id;
         const auto is_of_it = [id](const Pair* pair) { return pair->parts().model.id == id; };
-        const bool is_less_urgent =
-            pairs[i]->priority().contact_s > kLessUrgent * waits.priority().contact_s;
-        if (!is_less_urgent)
+        const bool is_later =
+            pairs[i]->priority().contact_s > kLaterContact * waits.priority().contact_s;
+        if (!is_later)
         {
-            return std::nullopt; // The pairs before it aren't either.
+            return std::nullopt; // Pairs of higher priority are even nearer to contact.
         }
         if (models[id].is_streamed_model && models[id].is_resident() &&
             std::ranges::none_of(pairs.first(i), is_of_it) &&

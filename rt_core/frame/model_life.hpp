@@ -13,40 +13,41 @@
 namespace tactus
 {
 
-/// Loads and removes streamed models, of which a frame starts with the header alone.
+/// Loads and removes streamed models, which start with the header alone.
 ///
 ///     known -> wanted -> arriving -> resident -> leaving -> known
 ///
-/// A wanted model whose base mesh doesn't arrive is known again: the transport thread returns its
-/// cells. While it has a pair it is wanted again after a while.
+/// If the base mesh of a wanted model doesn't arrive, the transport thread returns its memory and
+/// the model is known again. While it has a pair, it is wanted again after a while.
 ///
-/// A model is wanted as soon as it has a pair, which is as far ahead as the device moves in 150 ms,
-/// or kStreamedHorizon_m. Memory for its base mesh is then reserved, the mesh is requested, and its
-/// faces enter in slices, those of the pair of highest priority first. Until it is resident its
-/// pairs answer from its box. It leaves after 2 s without a pair, or earlier if memory for a wanted
-/// model is missing. Then the model that has been without a pair for longest leaves. If there is
-/// none, the model of the lowest-priority pair leaves, if its pairs can spare it and it is twice as
-/// far from contact. Haptic thread.
+/// A model is wanted once it has a pair: at a distance that the device moves in 150 ms, or
+/// kStreamedHorizon_m. Memory for its base mesh is reserved, the mesh is requested, and its faces
+/// enter in slices, by the priority of their pairs. Until it is resident its pairs answer from its
+/// box.
+///
+/// A model leaves after 2 s without a pair. If memory for a wanted model is missing, the model
+/// without a pair for longest leaves at once. If all have pairs, that of the lowest-priority pair
+/// leaves, if its pairs can spare it and it is twice as far from contact. Haptic thread.
 class ModelLife
 {
 public:
     explicit ModelLife(std::int64_t period_ns) noexcept;
 
-    /// Runs one frame, after arrivals were adopted; `pairs` by priority. Pairs see the changes in
-    /// the next frame.
+    /// Does one frame's work, after arrivals were adopted; `pairs` are sorted by priority. Pairs
+    /// see the changes in the next frame.
     void go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
                WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// State of one frame.
+    /// Progress of one frame of go_on().
     struct Turn
     {
         std::uint32_t entering{0}; ///< Faces that may still enter in this frame.
-        std::uint32_t leaving{0};  ///< Faces that may still leave.
-        /// Highest-priority pair whose model lacks memory; null if none.
+        std::uint32_t leaving{0};  ///< Faces that may still leave in this frame.
+        /// Pair of highest priority whose model lacks memory; null if none.
         const Pair* waits{nullptr};
-        /// True if a model returned its memory, which the waiting pair finds in the next frame. No
-        /// other model has to leave before that.
+        /// True if a model has returned its memory, which the waiting pair gets in the next frame.
+        /// No other model has to leave before that.
         bool gave_room{false};
     };
     static void want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept;

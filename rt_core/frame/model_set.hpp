@@ -16,18 +16,18 @@
 namespace tactus
 {
 
-/// A frame's models, their outputs, and the busy ones that it updates: models with a pair, and
-/// afterwards until nothing is left to do for them. Haptic thread.
+/// Models of a frame, their outputs, and a list of the busy ones, which frames update. A model is
+/// busy while it has a pair, and afterwards until nothing is left to do for it. Haptic thread.
 class ModelSet
 {
 public:
-    /// Capacity for `most` models.
+    /// Reserves memory for `most` models.
     ModelSet(Arena& arena, std::size_t most) noexcept
         : slots_(arena.take<ModelSlot>(most)), outputs_(arena.take<ModelOutput>(most))
     {
     }
 
-    /// Place for the next model; add() follows. There is none without memory, while measuring.
+    /// Place in which to make the next model; add() follows. Invalid if the arena only measures.
     [[nodiscard]] std::optional<Model>& next() noexcept { return slots_[count_].model; }
     /// Adds the model made in next(), as busy.
     void add(std::uint32_t frame) noexcept;
@@ -41,10 +41,10 @@ public:
     [[nodiscard]] ModelSlot& slot(ModelId id) noexcept { return slots_[id.value]; }
     [[nodiscard]] const ModelSlot& slot(ModelId id) const noexcept { return slots_[id.value]; }
 
-    /// Busy models by their numbers.
+    /// Busy models in the order of their ids.
     [[nodiscard]] std::span<const ModelId> busy() const noexcept { return busy_.view(); }
-    /// Busy models in rotation: each is first in turn, and the rest of the frame's budgets is for
-    /// the next.
+    /// Busy model at a position that rotates with the frame: each model comes first in turn, and
+    /// later ones get the rest of the frame's budgets.
     [[nodiscard]] ModelId in_turn(std::uint32_t busy, std::uint32_t frame) const noexcept
     {
         return busy_[(frame + busy) % busy_.size()];
@@ -53,14 +53,14 @@ public:
     void keep_busy(ModelId id) noexcept TACTUS_NONBLOCKING;
     /// Marks the model as having a pair in this frame.
     void wake(ModelId id, std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
-    /// Ends the frame: models without a pair in it and with nothing left to do rest.
+    /// Ends the frame: models without a pair in it and with nothing left to do are no longer busy.
     void let_rest(std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
 
-    /// Fits the trees of busy models to the faces that changed, or `all` of them.
+    /// Refits the trees of busy models to the changed faces, or, with `all`, to all faces.
     void refit(bool all, WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
     /// Copies the state of busy models into outputs() at the end of the frame.
     void report() noexcept TACTUS_NONBLOCKING;
-    /// One per place.
+    /// Outputs of all models; those of models that are not busy are of their last busy frame.
     [[nodiscard]] std::span<const ModelOutput> outputs() const noexcept { return outputs_; }
 
 private:

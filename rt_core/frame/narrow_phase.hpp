@@ -13,27 +13,27 @@
 namespace tactus
 {
 
-/// Query stage of a frame: each pair's distance, and the surface that its tool may touch.
+/// Query stage of a frame: finds each pair's distance, and the surface that its tool may touch.
 ///
-/// The highest-priority pairs come first. The others share the rest of the frame's walks and of the
-/// memory for triangles. Pairs of mesh tools have a separate allowance (kMeshBudgetFactor) and use
-/// none of that. Haptic thread.
+/// Pairs are served by priority, and later pairs share what is left of the frame's traversals and
+/// memory for triangles. Pairs of mesh tools use neither: they have an allowance of their own
+/// (kMeshBudgetFactor). Haptic thread.
 class NarrowPhase
 {
 public:
-    /// Takes memory for the triangles of the set-up's pairs.
+    /// Takes memory from the arena for the triangles of the set-up's pairs.
     NarrowPhase(Arena& arena, const FrameSetup& setup) noexcept;
 
-    /// Queries of all tools except resting ones.
+    /// Runs the queries of all tools except resting ones.
     void run(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
     /// Repeats the queries of one tool from its new place. False if one of them lacks a whole
-    /// budget: its answer could prove less than the last one.
+    /// budget, as its answer could then prove less than the last one.
     [[nodiscard]] bool try_again(FrameParts& parts, std::uint32_t tool,
                                  FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// Frame::warm_caches(), in the memory of the last frame's surfaces, which are not needed any
-    /// more.
+    /// Does the work of Frame::warm_caches(), in the memory of the last frame's surfaces, which are
+    /// not needed any more.
     void warm_caches(const FrameParts& parts,
                      const FrameAccount& account) const noexcept TACTUS_NONBLOCKING;
 
@@ -49,10 +49,10 @@ private:
     void count(const Walked& before, const WorkCounters& now) noexcept;
 
     SurfaceRoom room_;
-    SurfaceRoom room_left_;                             ///< Left after the queries of this frame.
-    Walked walked_;                                     ///< Total of this frame.
-    std::array<std::uint32_t, kMaxTools> query_work_{}; ///< Work of each tool's pairs in this
-                                                        ///< frame.
+    SurfaceRoom room_left_; ///< Room left after the queries of this frame.
+    Walked walked_;         ///< Nodes and triangles of this frame's queries.
+    /// Work of each tool's queries in this frame, in instructions.
+    std::array<std::uint32_t, kMaxTools> query_work_{};
 };
 
 } // namespace tactus

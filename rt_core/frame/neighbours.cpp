@@ -12,11 +12,11 @@ namespace tactus
 namespace
 {
 
-/// Distance ahead of a tool, at any speed, at which streamed models are loaded. A user at 2 m/s
+/// Distance beyond the reach, for any speed, at which streamed models are loaded. A user at 2 m/s
 /// covers it in 80 ms: a round trip of 20 ms plus request, transfer and entering.
 constexpr double kStreamedHorizon_m = 0.16;
 
-/// Sphere round a model's box, in its frame.
+/// Bounding sphere of a model's box, in the model's frame.
 Sphere model_sphere(const ModelHeader& header) noexcept
 {
     const auto& extent = header.fields().extent_quanta;
@@ -36,7 +36,7 @@ bool are_paired(const FrameParts& parts, std::uint32_t tool, std::uint32_t objec
                                [object](const Pair* pair) { return pair->object() == object; });
 }
 
-/// Ends pairs from the last one on: the pairs behind one that ends move up.
+/// Ends the pairs for which `ends` is true; from the last one on, as later pairs move up.
 void end_pairs(FrameParts& parts, const auto& ends) noexcept
 {
     for (std::size_t i = parts.pairs.all().size(); i > 0; --i)
@@ -56,7 +56,7 @@ Neighbours::Neighbours(Arena& arena, const FrameSetup& setup) noexcept
 {
 }
 
-/// Places the object's sphere, which holds its model's box and the rounding there.
+/// Sets the object's bounding sphere in the world, with the rounding of its pose.
 void Neighbours::place(const FrameParts& parts, std::uint32_t object) noexcept
 {
     const ObjectPose& pose = parts.objects[object].pose;
@@ -143,7 +143,7 @@ void Neighbours::look(const FrameParts& parts) noexcept
     }
 }
 
-/// The nearest of the near objects that do not fit as pairs.
+/// Nearness of the nearest pair of tool and near object that does not fit; kNothing if all fit.
 Neighbours::Nearness Neighbours::first_left_out(const FrameParts& parts) const noexcept
 {
     std::size_t near = 0;
@@ -168,8 +168,7 @@ Neighbours::Nearness Neighbours::first_left_out(const FrameParts& parts) const n
     return *first_out;
 }
 
-/// Distance beyond the range within which the object matters to the tool in this frame. All values
-/// differ.
+/// Distance of the object beyond the tool's reach, with a number that makes all values differ.
 Neighbours::Nearness Neighbours::nearness(const FrameParts& parts, std::uint32_t tool,
                                           std::uint32_t object) const noexcept
 {
@@ -178,7 +177,7 @@ Neighbours::Nearness Neighbours::nearness(const FrameParts& parts, std::uint32_t
     return {gap_m, tool * kMaxObjects + object};
 }
 
-/// Continues or begins pairs nearer than `first_out`, and ends the others.
+/// Begins missing pairs nearer than `first_out`, and ends all others.
 void Neighbours::pair_up(FrameParts& parts, const Nearness& first_out) const noexcept
 {
     end_pairs(parts,
@@ -218,8 +217,9 @@ void Neighbours::begin_pair(FrameParts& parts, std::uint32_t tool,
     parts.pairs.begin(pair);
 }
 
-/// False for the objects at start, and if the tool was proven farther away than the motion of both
-/// since. An added object begins apart.
+/// False in the first frames, for the objects at start. Otherwise true for an object added in this
+/// frame, or if the proven clearance is no more than the motion of both since plus the tool's
+/// radius.
 bool Neighbours::begins_apart(const FrameParts& parts, std::uint32_t tool,
                               std::uint32_t object) const noexcept
 {
@@ -231,7 +231,7 @@ bool Neighbours::begins_apart(const FrameParts& parts, std::uint32_t tool,
             !(parts.tools.status(tool).clear_m - ways_m > parts.tools[tool].radius_m()));
 }
 
-/// Finds each tool's clearance from all objects without a pair of it.
+/// Finds each tool's clearance from all objects that have no pair with the tool.
 void Neighbours::find_clearances(FrameParts& parts, const Nearness& first_out,
                                  FrameAccount& account) noexcept
 {

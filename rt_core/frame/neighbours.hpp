@@ -16,27 +16,27 @@
 namespace tactus
 {
 
-/// Pairs each tool with its nearby objects until pairs run out. For all other objects the tool
-/// keeps a proven clearance (ToolStatus::clear_m).
+/// Pairs each tool with the objects near it, nearest first, while pairs are free. The tool keeps a
+/// proven clearance from all other objects (ToolStatus::clear_m).
 ///
-/// A pair lasts as long as its object is on the tool's list (BroadPhase) and among the nearest that
-/// pairs suffice for. An object beyond the list may have passed round the tool: a pair begins
-/// apart, without a force, unless both were proven apart in the last frame by more than their
-/// motion since. Haptic thread.
+/// A pair lasts while its object is on the tool's list (BroadPhase) and among the nearest that free
+/// pairs suffice for. An object off the list may have passed through the tool. So a new pair begins
+/// apart, without a force, unless the last frame proved a distance larger than the motion of both
+/// since. Haptic thread.
 class Neighbours
 {
 public:
     Neighbours(Arena& arena, const FrameSetup& setup) noexcept;
 
-    /// Adds or moves an object, before find().
+    /// Takes over the pose of an added or moved object, before find().
     void place(const FrameParts& parts, std::uint32_t object) noexcept TACTUS_NONBLOCKING;
-    /// Handles an object's motion from `before`: it may have passed over tools without a pair of
-    /// it.
+    /// Handles an object's motion from `before` to its present pose: it may have passed over tools
+    /// that have no pair with it.
     void look_for_leap(FrameParts& parts, std::uint32_t object,
                        const ObjectPose& before) noexcept TACTUS_NONBLOCKING;
     /// Removes an object and ends its pairs.
     void remove(FrameParts& parts, std::uint32_t object) noexcept TACTUS_NONBLOCKING;
-    /// Ends the pairs of an added or removed tool, and drops its neighbours.
+    /// Ends the pairs of an added or removed tool, and clears its list of near objects.
     void forget(FrameParts& parts, std::uint32_t tool) noexcept TACTUS_NONBLOCKING;
 
     /// Finds the pairs of this frame and the clearances to all other objects; the tools must have
@@ -44,9 +44,9 @@ public:
     void find(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// Metres, then a unique number of tool and object, which orders equal distances.
+    /// Distance in metres, then a unique number of tool and object that orders equal distances.
     using Nearness = std::pair<double, std::uint32_t>;
-    /// Farther than anything: all pairs fit.
+    /// Nearness farther than any: all pairs fit.
     static constexpr Nearness kNothing{kInfinity, 0xFFFF'FFFFU};
 
     void look(const FrameParts& parts) noexcept;
@@ -61,9 +61,10 @@ private:
                          FrameAccount& account) noexcept;
 
     BroadPhase broad_;
-    std::uint32_t paired_lists_{0}; ///< BroadPhase::lists() for which all pairs exist; 0: some are
-                                    ///< missing.
-    /// Largest displacement in this frame of an object without a pair of the tool.
+    /// BroadPhase::lists() at the last frame in which every listed object had a pair; 0: some have
+    /// none.
+    std::uint32_t paired_lists_{0};
+    /// Largest displacement in this frame of an object without a pair with the tool.
     std::array<double, kMaxTools> leap_m_{};
     bool has_streamed_models_{false};
 };

@@ -49,7 +49,7 @@ void place_in_world(const ObjectPose& pose, TouchReport& touches) noexcept
     touches.covered_m *= pose.scale;
 }
 
-/// Keeps the contacts within the radius, from a search with a larger distance.
+/// Drops contacts beyond the radius, from a search within a larger distance.
 void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& report) noexcept
 {
     ContactSet& contacts = report.contacts;
@@ -64,21 +64,23 @@ void keep_within(double radius_m, const DistanceAnswer& answer, ContactReport& r
                          (answer.certified_radius_m >= radius_m || answer.lower_m > radius_m);
 }
 
-/// Largest error of faces that count as the surface, as a share of a quantum, for any stiffness.
+/// Largest error of coarse faces that count as the surface, in quanta; holds for any stiffness.
 constexpr double kToleratedQuanta = 0.25;
-/// Largest error if capacity is short, as a share of the tool's radius: the tool stays outside.
+/// Largest such error if capacity is short, as a share of the tool's radius, so that the tool stays
+/// outside.
 constexpr double kMostTolerated = 0.5;
 
-/// Faults that a coarser surface helps against.
+/// Faults of refinement that a coarser surface avoids: memory is full, or work is late.
 constexpr FrameFault kSurfaceFull = FrameFault::forest_full | FrameFault::tree_full |
                                     FrameFault::cache_full | FrameFault::refine_heap_full |
                                     FrameFault::held_records_full;
 constexpr FrameFault kSurfaceLate = FrameFault::split_budget_spent | FrameFault::node_budget_spent;
 
-/// Share of the approach by which the search ahead goes farther: one search in about two frames.
+/// Share of the approach by which a search ahead goes farther, so that one search serves about two
+/// frames.
 constexpr double kWalkedShare = 0.2;
 
-/// Factor for more than four roundings of the distance to a box.
+/// Factor that covers the rounding of the distance to a box: more than four roundings.
 constexpr double kBoxRoundedDown = 1.0 - 0x1p-49;
 
 const MeshCore& mesh_core_of(const Tool& tool) noexcept
@@ -101,7 +103,7 @@ PairMemory PairMemory::take(Arena& arena, std::span<const ToolSpec> tools,
     const auto for_any = [&](bool (*needs)(const ToolSpec&) noexcept)
     { return std::ranges::any_of(tools, needs) ? pairs : 0; };
     return {arena.take<ContactReport>(for_any(&wants_contacts)),
-            arena.take<TouchReport>(for_any(&Tool::is_held_as_body)),
+            arena.take<TouchReport>(for_any(&Tool::is_held_as_rigid)),
             arena.take<MeshPair>(for_any(&is_mesh)),
             arena.take<PairFront>(std::min<std::size_t>(for_any(&is_mesh), PairFront::kFronts))};
 }
@@ -114,7 +116,7 @@ Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) 
 {
     const ToolSpec& tool = parts.tool->spec();
     contacts_ = wants_contacts(tool) ? &memory.contacts[index] : nullptr;
-    touches_ = Tool::is_held_as_body(tool) ? &memory.touches[index] : nullptr;
+    touches_ = Tool::is_held_as_rigid(tool) ? &memory.touches[index] : nullptr;
     mesh_ = is_mesh(tool) ? &memory.meshes[index] : nullptr;
     if (mesh_ != nullptr)
     {
@@ -152,19 +154,19 @@ void Pair::find_priority() noexcept
 {
     const Tool& tool = *parts_.tool;
     const ObjectPose& pose = parts_.object->pose;
-    const Vec3 before_m = hand_m_;
-    hand_m_ = to_model(pose, tool.goal().position_m);
+    const Vec3 before_m = device_m_;
+    device_m_ = to_model(pose, tool.goal().position_m);
     priority_ = Priority::at(0.0, 0.0, tool.spec().query_only);
     if (region_of_interest_.has_known())
     {
         const double gap_m =
             region_of_interest_.from_motion().lower_m * pose.scale - tool.radius_m();
-        const double speed = (hand_m_ - before_m).norm() * pose.scale / tool.goal().elapsed_s;
+        const double speed = (device_m_ - before_m).norm() * pose.scale / tool.goal().elapsed_s;
         priority_ = Priority::at(std::max(gap_m, 0.0), speed, tool.spec().query_only);
     }
 }
 
-/// Input of the predictor.
+/// Motion of the tool relative to the object, for the predictor.
 PairMotion Pair::motion() const noexcept
 {
     const Tool& tool = *parts_.tool;
@@ -224,8 +226,8 @@ void Pair::rank(RegionRanking& ranking) noexcept
     }
 }
 
-/// Distance from the core's centre within which the nearest surface may lie, beyond the pair's
-/// reach. 0 if it is not requested or nothing is known.
+/// Radius round the core's centre within which the nearest surface may lie, if that is beyond the
+/// reach. 0 if the distance is not requested or nothing is known.
 double Pair::distance_reach_m() const noexcept
 {
     if (!tells_distance() || !region_of_interest_.has_known())
@@ -238,13 +240,14 @@ double Pair::distance_reach_m() const noexcept
                : 0.0;
 }
 
-/// True if the distance alone needs surface ahead: the ranking has capacity for many such pairs.
+/// True if the pair needs surface for its distance alone. No region ahead is then ranked, as the
+/// ranking could not hold those of many such pairs.
 bool Pair::measures_from_afar() const noexcept
 {
     return parts_.tool->spec().query_only && distance_reach_m() > 0.0;
 }
 
-/// Regions that do not fit only wait.
+/// A region that does not fit is ranked in a later frame.
 void Pair::rank_distance(RegionRanking& ranking) const noexcept
 {
     const double reach_m = distance_reach_m();
@@ -261,7 +264,9 @@ void Pair::ask(RefineRequests& requests) noexcept
     of_tool_.questions.clear();
     if (!is_model_here_)
     {
-        return; // Nothing was requested yet, or lose_model() has dropped the state.
+        // There is nothing to ask: nothing was requested yet, or lose_model() has dropped the
+        // state.
+        return;
     }
     if (mesh_ != nullptr)
     {
@@ -311,7 +316,7 @@ SurfaceTolerance::Range Pair::tolerance_range() const noexcept
     return {std::min(least, most), most};
 }
 
-/// Result of the last frame.
+/// Finds from the last frame whether capacity and time suffice for the surface.
 SurfaceTolerance::Room Pair::surface_room() const noexcept
 {
     const LocalSurface& surface = surface_;
@@ -332,7 +337,7 @@ SurfaceTolerance::Room Pair::surface_room() const noexcept
     return has_room ? SurfaceTolerance::Room::enough : SurfaceTolerance::Room::fitting;
 }
 
-/// Asks for the spheres of the region of interest. Memories of unused spheres are invalidated.
+/// Asks about the spheres of the region of interest. Certificates of unused spheres are dropped.
 void Pair::ask_for_spheres() noexcept
 {
     const double fixed_radius = parts_.rules->variant.fixed_radius;
@@ -359,8 +364,9 @@ void Pair::ask_for_spheres() noexcept
     }
 }
 
-/// Asks for all surface that may be nearer than the known one; it may wait. The kept range is
-/// hardly larger, or a distant tool would keep all that it passed.
+/// Asks for all surface that may be nearer than the nearest known point; the question may wait. The
+/// range in which faces stay refined is hardly larger, or a distant tool would keep all that it
+/// passed.
 void Pair::ask_for_distance() noexcept
 {
     RefineQuestion question{region_of_interest_.core().center(), distance_reach_m(), 0.0,
@@ -373,8 +379,8 @@ void Pair::ask_for_distance() noexcept
         of_object_);
 }
 
-/// The question at the tool's future place. Along a surface it is no farther than the reach, may
-/// wait, and covers several frames in one search.
+/// Moves a question to the tool's future place. Along a surface, the place is no farther than the
+/// reach, the question may wait, and one search covers several frames.
 RefineQuestion Pair::ahead_of(RefineQuestion question) const noexcept
 {
     Vec3 way_m = region_of_interest_.approach_m();
@@ -415,7 +421,7 @@ void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question
     {
         question.memory->is_known = false;
     }
-    // Beyond the kernels' range no model is in reach, and a complete model lacks nothing.
+    // Beyond the kernels' range no model is in reach; a complete model lacks nothing.
     if (is_asked && !is_shed_ && !model.is_complete() &&
         !is_beyond_kernels(question.center_m, model.header.quantum_m()))
     {
@@ -428,7 +434,8 @@ void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question
     question.memory->is_known = false;
 }
 
-/// A pair without questions still submits a request while its closure is open.
+/// Adds a request with the pair's questions to one model. Without questions a request is only made
+/// if the closure is still open.
 template <std::size_t Capacity>
 void Pair::request(const NamedModel& model, Inquiry<Capacity>& inquiry,
                    RefineRequests& requests) const noexcept
@@ -505,14 +512,15 @@ SurfaceRoom Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, W
     return room;
 }
 
-/// Sum of the models' revisions, which only grow.
+/// Sum of the models' revisions; changes with each change of either, as revisions only grow.
 std::uint32_t Pair::revision() const noexcept
 {
     return parts_.model.model->revision +
            (mesh_ != nullptr ? parts_.tool_model.model->revision : 0U);
 }
 
-/// True if a query would give the same answer. A pose from a host may become too old.
+/// True if a query would give the same answer. A pose from a server counts as changing, as it may
+/// become too old.
 bool Pair::is_unchanged() const noexcept
 {
     return was_answered_ && !has_moved() && !feels_otherwise_ &&
@@ -536,7 +544,7 @@ void Pair::lose_model() noexcept
     }
 }
 
-/// Bounds by the model's box: all of the surface is in it, and some at each of its sides.
+/// Bounds on the distance by the model's box: the surface lies in it and touches each of its sides.
 Pair::BoxGap Pair::gap_to_box() const noexcept
 {
     const ModelHeader& header = parts_.model.model->header;
@@ -583,7 +591,7 @@ void Pair::query_box() noexcept
     }
 }
 
-/// Meeting faces that end a search. For the force of a rigid tool one is enough.
+/// Number of meeting faces that ends a search. One is enough for the force of a rigid tool.
 std::uint32_t Pair::enough_meeting() const noexcept
 {
     return touches_ != nullptr && !parts_.tool->spec().wants_contacts ? 1 : kEnoughMeetingFaces;
@@ -616,7 +624,7 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
     report_core(work);
 }
 
-/// Reports contacts for the caller and touches for the force, in the world.
+/// Reports contacts for the caller, and touches for the force, in the world frame.
 void Pair::report_core(WorkCounters& work) noexcept
 {
     const ToolSpec& tool = parts_.tool->spec();
@@ -632,7 +640,7 @@ void Pair::report_core(WorkCounters& work) noexcept
     if (touches_ != nullptr)
     {
         touches_->clear();
-        if (surface_.answer.lower_m > 0.0) // Otherwise the body stays in place, or waits.
+        if (surface_.answer.lower_m > 0.0) // Otherwise the tool stays in place, or waits.
         {
             work.budget.spend(surface_.count * WorkCost::contact);
             report_touches(region_of_interest_.core(), region_of_interest_.reach_m(), model.tree,
@@ -642,7 +650,7 @@ void Pair::report_core(WorkCounters& work) noexcept
     }
 }
 
-/// Tightens the answer of a truncated search by the last answer.
+/// Tightens the answer of a cut search by the last answer and the motion since.
 void Pair::narrow(DistanceAnswer& answer) const noexcept
 {
     if (answer.kind == AnswerKind::bounded && region_of_interest_.has_known())
@@ -661,7 +669,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
     const ObjectPose& pose = parts_.object->pose;
     DistanceAnswer& answer = surface_.answer;
     ContactReport& contacts = *contacts_;
-    // A tool that waits to be clear only needs the intersection test.
+    // A tool that waits to be clear only needs the intersection test, and no touches.
     TouchReport* touches = parts_.tool->is_held() ? touches_ : nullptr;
     if (touches_ != nullptr)
     {
@@ -680,7 +688,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
                                                        : -1.0;
         const FrameVariant& variant = parts_.rules->variant;
         const bool is_proven = variant.fixed_radius == 0.0;
-        // A force-rendering tool does not move while any faces meet: one pair is enough.
+        // One pair is enough for a force, as the tool does not move while any faces meet.
         const std::uint32_t enough = tool.wants_pairs      ? kAllMeetingFaces
                                      : tool.wants_contacts ? kEnoughMeetingFaces
                                                            : 1;
@@ -708,7 +716,7 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
     mesh_->add_work(work, faults);
 }
 
-/// Rounding of the distances in the world.
+/// Bound on the rounding of the distances by the conversion to the world.
 double Pair::rounding_m() const noexcept
 {
     const ObjectPose& pose = parts_.object->pose;
@@ -756,7 +764,8 @@ PairOutput Pair::output() const noexcept
 {
     const ObjectPose& pose = parts_.object->pose;
     const DistanceAnswer& answer = surface_.answer;
-    // Known beyond the reach as well, which the force does not use.
+    // With wants_distance the nearest point may be known beyond the reach; the force does not use
+    // it.
     const bool is_nearest_known =
         answer.kind == AnswerKind::separated && tells_distance() && !answer.nearest_face.is_none();
     const AnswerKind known =

@@ -32,39 +32,40 @@ struct PairRules
     Prediction prediction{Prediction::automatic};
     double force_tolerance_n{0.0};
     FrameVariant variant;
-    std::int64_t now_ns{0}; ///< Time of this frame.
+    std::int64_t now_ns{0}; ///< Time of this frame, on the clock of ObjectPose::arrival_ns.
     std::uint32_t frame{0};
-    WorkBudget* work{nullptr}; ///< Work of this frame.
+    WorkBudget* work{nullptr}; ///< Budget of this frame's work.
 };
 
-/// A model and its id in the frame.
+/// Model and its id in the frame.
 struct NamedModel
 {
     ModelId id{};
     const Model* model{nullptr};
 };
 
-/// Parts of a pair, which outlive it.
+/// Tool, object and models of a pair; all of them outlive the pair.
 struct PairParts
 {
     std::uint32_t tool_index{0};
     std::uint32_t object_number{0};
     const PairRules* rules{nullptr};
     const Tool* tool{nullptr};
-    const Object* object{nullptr}; ///< Always in its present state.
-    /// One passed round the other: no force until they are proven apart.
+    const Object* object{nullptr}; ///< The object, whose present state can always be read here.
+    /// True if tool and object may have passed through each other: no force until the two are
+    /// proven apart.
     bool begins_apart{false};
     NamedModel model;      ///< Model of the object.
     NamedModel tool_model; ///< Model of a tool that is a mesh; none for others.
 };
 
-/// Memory for the triangles of pairs' surfaces.
+/// Free memory for the triangles that queries find.
 struct SurfaceRoom
 {
     std::span<LocalTriangle> triangles;
     std::span<double> distances_m;
 
-    /// A surface with the largest capacity left for one.
+    /// Empty surface with as much of the memory as one surface may use.
     [[nodiscard]] LocalSurface surface() const noexcept
     {
         LocalSurface surface;
@@ -79,27 +80,29 @@ struct SurfaceRoom
     }
 };
 
-/// Memory of pairs outside of them, by their index. Empty if no tool needs it.
+/// Memory that some pairs have besides Pair, by the index of the pair. Spans are empty if no tool
+/// needs them.
 struct PairMemory
 {
-    std::span<ContactReport> contacts; ///< Used by tools that want contacts or are meshes.
-    std::span<TouchReport> touches;    ///< Used by rigid tools.
-    std::span<MeshPair> meshes;        ///< Used by tools that are meshes.
-    std::span<PairFront> fronts;       ///< Used by those of highest priority.
+    std::span<ContactReport> contacts; ///< Reports of tools that want contacts or are meshes.
+    std::span<TouchReport> touches;    ///< Reports of rigid tools.
+    std::span<MeshPair> meshes;        ///< Data of mesh tools.
+    std::span<PairFront> fronts; ///< Fronts for the pairs of mesh tools with highest priority.
 
     [[nodiscard]] static PairMemory take(Arena& arena, std::span<const ToolSpec> tools,
                                          std::size_t pairs) noexcept;
 };
 
-/// Questions of a pair to its object's model in a frame: for each sphere its present and its
-/// predicted place, and one for the distance.
+/// Largest number of questions of a pair to its object's model in a frame: two for each sphere of
+/// the cover (present and predicted place), and one for the distance.
 inline constexpr std::size_t kPairQuestions = std::size_t{2} * kMaxCoverSpheres + 1;
-/// One per pair, and one more for a tool that is a mesh.
+/// Largest number of requests in a frame: one to each pair's object, and one to each pair's mesh
+/// tool.
 inline constexpr std::size_t kMaxRequests = std::size_t{2} * kMaxPairs;
 using RefineRequests = StaticVector<RefineRequest, kMaxRequests>;
 
-/// State of one tool and one object that is kept from frame to frame. Haptic thread; the functions
-/// in the frame's order. 5.3 KiB besides its parts.
+/// State of one tool at one object, kept from frame to frame. Haptic thread; the functions are in
+/// the order of their calls in a frame. 5.3 KiB without the memory of PairMemory.
 class Pair
 {
 public:
@@ -113,80 +116,84 @@ public:
 
     /// Updates the pair for the poses of tool and object in this frame.
     void place(const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
-    /// Priority found by place().
+    /// Priority of the pair, as found by place().
     [[nodiscard]] const Priority& priority() const noexcept { return priority_; }
 
-    /// Enables or disables loading and refinement for this pair.
+    /// Disables loading and refinement for this pair, or, with false, enables them.
     void shed(bool is_shed) noexcept { is_shed_ = is_shed; }
-    /// True if shedding the pair would save anything.
+    /// True if the pair's tool is not proven out of reach, so that shedding the pair would save
+    /// work.
     [[nodiscard]] bool is_awake() const noexcept { return !region_of_interest_.is_asleep(); }
     [[nodiscard]] bool is_of_mesh() const noexcept { return mesh_ != nullptr; }
-    /// MeshPair::exchange_front(), for a tool that is a mesh.
+    /// Calls MeshPair::exchange_front(); the tool must be a mesh (asserted).
     PairFront* exchange_front(PairFront* front) noexcept TACTUS_NONBLOCKING
     {
         TACTUS_ASSERT(mesh_ != nullptr);
         return mesh_->exchange_front(front);
     }
 
-    /// Adds the regions that the pair may touch soon to the ranking, unless its models are resident
-    /// as a whole.
+    /// Adds the regions that the tool may touch soon to the ranking, unless the pair's models are
+    /// resident as a whole.
     void rank(RegionRanking& ranking) noexcept TACTUS_NONBLOCKING;
-    /// Adds the regions that its distance needs (ToolSpec::wants_distance), behind those that all
-    /// pairs may touch.
+    /// Adds the region that a requested distance needs (ToolSpec::wants_distance), behind those
+    /// that tools may touch.
     void rank_distance(RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the pair's questions to its models: for the tool's place and, if it approaches, for its
-    /// future place. Certificates of unrequested questions are dropped: a model may coarsen there.
+    /// Adds the pair's questions to `requests`: about the tool's place and, if it approaches, its
+    /// future place. Certificates of all other questions are dropped, as a model may coarsen there.
     void ask(RefineRequests& requests) noexcept TACTUS_NONBLOCKING;
 
-    /// True, after ask(), if too much surface is in reach, which merges reduce.
+    /// True, after ask(), if capacity for the surface in reach is short, which merges relieve.
     [[nodiscard]] bool is_short() const noexcept
     {
         return room_ == SurfaceTolerance::Room::short_ && tolerance_.code() != 0;
     }
-    /// True if the pair's model is, or will be, resident as a whole.
+    /// True if the object's model is, or will be, resident as a whole, but is too fine for the
+    /// pair's tolerance.
     [[nodiscard]] bool needs_coarser_model() const noexcept TACTUS_NONBLOCKING;
 
-    /// Queries the distance and the surface that the tool's force needs: triangles are stored from
-    /// the room's beginning on. Returns the remaining room.
+    /// Queries the distance and the surface that the tool's force needs. Triangles are stored at
+    /// the beginning of `room`; returns the rest of it.
     [[nodiscard]] SurfaceRoom query(const SurfaceRoom& room, const Budgets& budgets,
                                     WorkCounters& work,
                                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Repeats the query in the same frame, from the tool's new place; nothing is refined between.
-    /// A proxy's triangles need a separate room: its previous one, or the one given. Returns the
-    /// rest of that.
+    /// Repeats the query from the tool's new place in the same frame. Triangles of a sphere are
+    /// stored in the memory of the previous query or in `room`, whichever is larger. Returns the
+    /// rest of `room`.
     [[nodiscard]] SurfaceRoom query_again(const SurfaceRoom& room, const Budgets& budgets,
                                           WorkCounters& work,
                                           FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Repeats the last frame's query with its stored state; see Frame::warm_caches().
+    /// Repeats the last frame's query without any effect; see Frame::warm_caches().
     void warm_caches(const SurfaceRoom& room, const Budgets& budgets,
                      WorkBudget& work) const noexcept TACTUS_NONBLOCKING;
 
-    /// True if, in this frame, the object's model isn't resident and its box is in the tool's
+    /// True if, in this frame, the object's model isn't resident and its box is within the tool's
     /// reach: the tool stops there.
     [[nodiscard]] bool is_wall() const noexcept
     {
         return !is_model_here_ && lower_m_ <= parts_.tool->placement().reach_m;
     }
 
-    /// True if the object's model may be removed in spite of the pair: no contact is near, and its
-    /// box is not in the tool's reach.
+    /// True if the object's model may be removed in spite of the pair: no contact is expected soon,
+    /// and the model's box is out of the tool's reach.
     [[nodiscard]] bool can_spare_model() const noexcept TACTUS_NONBLOCKING;
-    /// Removes the model from the pair, whose closures have been released: it answers from the box.
+    /// Makes the pair answer from the model's box, since the model leaves. Closures must have been
+    /// released.
     void lose_model() noexcept TACTUS_NONBLOCKING;
 
-    /// True if the tool takes the object into account.
+    /// False until tool and object, which may have passed through each other, are proven apart: the
+    /// tool then ignores the object.
     [[nodiscard]] bool is_joined() const noexcept { return is_joined_; }
-    /// Result of query(), for the tool.
+    /// Surface found by query(), for the tool.
     [[nodiscard]] PlacedSurface placed() noexcept TACTUS_NONBLOCKING;
     /// True if the object was added or moved in this frame.
     [[nodiscard]] bool has_moved() const noexcept
     {
         return parts_.object->moved_frame == parts_.rules->frame;
     }
-    /// The object before and after the changes of this frame.
+    /// The object with its poses before and after this frame's changes.
     [[nodiscard]] NearObject near() noexcept
     {
         const ObjectPose& now = parts_.object->pose;
@@ -200,7 +207,7 @@ public:
     }
     /// True if query() would repeat its last result for a tool at the same place.
     [[nodiscard]] bool is_unchanged() const noexcept TACTUS_NONBLOCKING;
-    /// Ends the frame: keeps the object's pose as the previous one.
+    /// Stores the object's pose as the previous one, at the end of a frame.
     void remember() noexcept
     {
         if (has_moved())
@@ -208,14 +215,14 @@ public:
             stood_ = parts_.object->pose;
         }
     }
-    /// Closures that must be released before the pair ends.
+    /// Closures of the two models' questions, which must be released before the pair ends.
     [[nodiscard]] Closure& object_closure() noexcept { return of_object_.closure; }
     [[nodiscard]] Closure& tool_closure() noexcept { return of_tool_.closure; }
     /// Result of query(), for the frame's output.
     [[nodiscard]] PairOutput output() const noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// Questions of the pair to one of its models.
+    /// Questions of the pair to one of its models in this frame.
     template <std::size_t Capacity>
     struct Inquiry
     {
@@ -266,33 +273,35 @@ private:
     [[nodiscard]] double rounding_m() const noexcept;
 
     PairParts parts_;
-    LocalSurface surface_;             ///< Stored in the frame's room, for this frame.
-    ContactReport* contacts_{nullptr}; ///< Null unless the tool wants them or is a mesh.
+    LocalSurface surface_; ///< Surface of this frame; its triangles are in the frame's SurfaceRoom.
+    ContactReport* contacts_{nullptr}; ///< Null unless the tool wants contacts or is a mesh.
     TouchReport* touches_{nullptr};    ///< Null unless the tool is rigid.
     MeshPair* mesh_{nullptr};          ///< Null unless the tool is a mesh.
     RegionOfInterest region_of_interest_;
-    Similarity asked_;           ///< Pose of the tool at the last query, in the world.
-    Vec3 hand_m_{0.0, 0.0, 0.0}; ///< Device goal in the model's frame, in the last frame.
+    Similarity asked_;             ///< Pose of the tool at the last query, in the world.
+    Vec3 device_m_{0.0, 0.0, 0.0}; ///< Goal of the tool in the last frame, in the model's frame.
     Priority priority_;
     bool is_shed_{false};
     bool is_joined_{true};
-    bool is_model_here_{true}; ///< State of this frame.
-    ObjectPose stood_;         ///< Object's pose in the last frame.
+    bool is_model_here_{true}; ///< True if the object's model is resident in this frame.
+    ObjectPose stood_;         ///< Pose of the object in the last frame.
     ProxyMemory body_;
     MaterialBlend feel_;
-    bool feels_otherwise_{false}; ///< Differs from the last frame.
+    bool feels_otherwise_{false}; ///< True if the felt material differs from the last frame's.
     SurfaceTolerance tolerance_;
-    SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting}; ///< Result of the last frame.
-    /// The frame had work left for half as much again as it had used when this query ended.
+    /// Capacity for the surface, as found in the last frame.
+    SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting};
+    /// True if the frame had half as much work left as it had used at the end of this query.
     bool had_work_left_{true};
-    bool was_answered_{false};           ///< Answered by the last query, within its budgets.
-    std::uint32_t answered_revision_{0}; ///< Revision of its models at that time.
+    bool was_answered_{false};           ///< True if the last query ended within its budgets.
+    std::uint32_t answered_revision_{0}; ///< Value of revision() at the last query.
     RegionPredictor predictor_;
     std::array<RefineMemory, kPairQuestions> refine_memories_{};
     Inquiry<kPairQuestions> of_object_;
-    Inquiry<MeshPair::kPlaces> of_tool_; ///< Used if the tool is a mesh.
+    Inquiry<MeshPair::kPlaces> of_tool_; ///< Questions to the tool's model, if it is a mesh.
     QueryMemory query_memory_;
-    /// Bounds of the answer in the world, widened by the rounding of the conversion.
+    /// Lower and upper bound of the distance in the world, widened by the rounding of the
+    /// conversion.
     double lower_m_{0.0};
     double upper_m_{0.0};
 };

@@ -19,7 +19,7 @@ bool PairShedding::shed(std::span<Pair* const> order) noexcept
         pair.shed(is_shed);
         left -= is_shed ? 1 : 0;
     }
-    count_ -= left; // Fewer pairs were left than should wait.
+    count_ -= left; // Fewer pairs were left to shed than counted.
     return count_ > 0;
 }
 

@@ -12,32 +12,32 @@
 namespace tactus
 {
 
-/// Takes resources from the pairs of lowest priority while those of higher priority lack them.
+/// Sheds pairs: those of lowest priority are not loaded or refined while pairs of higher priority
+/// lack memory.
 ///
-/// A waiting pair gets its resources back after kCalmFrames without a refusal for a contact, and
-/// after twice as many each time that this was too soon.
+/// A shed pair resumes after kCalmFrames without a refusal for a contact. This wait doubles each
+/// time that a pair resumed too soon.
 class PairShedding
 {
 public:
-    /// Lets as many pairs wait as needed; `order`: the highest priority first. True if there are
-    /// any.
+    /// Sheds as many pairs as needed, from the end of `order`, which is sorted by priority. True if
+    /// any pair is shed.
     [[nodiscard]] bool shed(std::span<Pair* const> order) noexcept TACTUS_NONBLOCKING;
-    /// Learns from the refinement. `refused` is the class of highest priority with a refused page
-    /// or face, kPriorityClasses if none: one pair more waits if it was a contact or an imminent
-    /// one.
+    /// Learns from a refinement. `refused` is the highest priority class for which a face did not
+    /// fit; kPriorityClasses: none. One more pair is shed if the class is `touching` or `soon`.
     void learn(std::uint32_t refused) noexcept TACTUS_NONBLOCKING;
 
 private:
     static constexpr std::uint32_t kCalmFrames = 64;
     static constexpr std::uint32_t kCalmFramesMost = 64 * kCalmFrames;
 
-    /// Waiting pairs, of classes below below_.
+    /// Number of pairs to shed, of classes later than below_.
     std::uint32_t count_{0};
     PriorityClass below_{PriorityClass::touching};
-    /// Frames since a contact was last refused, or a pair resumed.
+    /// Frames since a face was last refused to a contact, or a pair resumed.
     std::uint32_t calm_frames_{0};
-    std::uint32_t patience_{kCalmFrames}; ///< Calm frames until the next pair resumes.
-    bool has_come_back_{false};           ///< A pair has resumed since the last was shed.
+    std::uint32_t patience_{kCalmFrames}; ///< Number of calm frames until the next pair resumes.
+    bool has_come_back_{false}; ///< True if a pair has resumed since the last one was shed.
 };
 
 } // namespace tactus

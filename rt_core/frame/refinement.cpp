@@ -14,10 +14,10 @@ namespace tactus
 namespace
 {
 
-/// Cost of a split near another surface, with its search, in ordinary splits.
+/// Cost of a split near another surface, including its search, as a multiple of an ordinary split.
 constexpr std::uint32_t kSurfaceSplit = 4;
 
-/// Faults that merges may help against.
+/// Faults of full memory, which merges relieve.
 constexpr FrameFault kNoRoom =
     FrameFault::forest_full | FrameFault::tree_full | FrameFault::cache_full;
 
@@ -34,7 +34,8 @@ std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
         had_no_room_ = had_no_room_ || pair->is_short();
         if (pair->needs_coarser_model())
         {
-            models[pair->parts().model.id].end_whole(); // Requests follow in the next frame.
+            // The next frame requests splits where tools need them.
+            models[pair->parts().model.id].end_whole();
         }
     }
     std::fill_n(services_.begin(), requests_.size(), Service{});
@@ -70,7 +71,8 @@ std::uint32_t Refinement::run(FrameParts& parts, FrameAccount& account) noexcept
     return refused;
 }
 
-/// Merges for all models, before any split. If capacity is short, uses the whole merge budget.
+/// Merges records in all busy models, before any split. If capacity is short, the whole merge
+/// budget is used.
 void Refinement::merge(FrameParts& parts, FrameAccount& account) noexcept
 {
     auto& [budgets, shares, work, faults, scene] = account;
@@ -106,7 +108,7 @@ std::uint32_t Refinement::refused_class() const noexcept
     return refused;
 }
 
-/// Counts the requests of each model, then groups them by model.
+/// Groups the requests by model, in by_model_.
 void Refinement::group(ModelSet& models) noexcept
 {
     for (const ModelId id : models.busy())
@@ -117,7 +119,8 @@ void Refinement::group(ModelSet& models) noexcept
     for (const RefineRequest& request : requests_)
     {
         ++models.slot(request.model).requests;
-        by_model_.push_back(request); // The order is arbitrary; the last loop corrects it.
+        // Only makes by_model_ long enough; the last loop puts the requests in order.
+        by_model_.push_back(request);
     }
     std::uint32_t before = 0;
     for (const ModelId id : models.busy())
@@ -136,8 +139,8 @@ std::span<const RefineRequest> Refinement::requests_of(const ModelSlot& slot) co
     return by_model_.view().subspan(slot.requests_end - slot.requests, slot.requests);
 }
 
-/// Gives each waiting request its share of the splits, class by class. Requests without a share for
-/// longest come first, then those with savings.
+/// Gives each waiting request its share of the splits, class by class. Requests that got no share
+/// for longest come first, then those with the most saved splits.
 void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept
 {
     SplitShares shares(limits.now);
@@ -176,16 +179,16 @@ void Refinement::share_splits(FrameParts& parts, FrameAccount& account, SplitLim
     }
 }
 
-/// Serves late requests with the remaining splits, then requests that may wait.
+/// Serves late requests with the splits that are left, then requests that may wait.
 void Refinement::serve_again(FrameParts& parts, FrameAccount& account, SplitLimits limits) noexcept
 {
     const WorkCounters& work = account.work;
     for (std::uint32_t i = 0; i < requests_.size() && work.splits < limits.now; ++i)
     {
-        // A request that stopped short of its budget proceeds only if others split since.
+        // A request that stopped before its limit can only proceed if others have split since.
         const Service& last = services_[i];
         const bool may_go_on = last.limits.now < limits.now || last.splits != work.splits;
-        // Near another surface a repeated search is expensive.
+        // Near another surface, a repeated search is too expensive.
         const bool has_had_enough =
             requests_[i].is_near_surface() &&
             has_fault(last.found, FrameFault::split_budget_spent | FrameFault::chunk_late);
@@ -196,7 +199,7 @@ void Refinement::serve_again(FrameParts& parts, FrameAccount& account, SplitLimi
     }
     for (std::uint32_t i = 0; i < requests_.size(); ++i)
     {
-        // Without splits left, a closure that is no longer needed is still released.
+        // Even without splits, an open closure that is no longer needed is released.
         const bool may_wait = requests_[i].is_open() && !requests_[i].is_late();
         if (may_wait && services_[i].limits.later < limits.later)
         {
@@ -211,7 +214,7 @@ void Refinement::serve(FrameParts& parts, FrameAccount& account, std::uint32_t r
     auto& [budgets, shares, work, faults, scene] = account;
     Model& model = parts.models[requests_[request].model];
     work.budget.spend(WorkCost::refining);
-    model.refit(work, faults); // The tree includes other requests' splits and merges.
+    model.refit(work, faults); // The tree must include the splits and merges of other requests.
     SplitLimits own = limits;
     if (requests_[request].is_near_surface())
     {
@@ -228,7 +231,8 @@ void Refinement::serve(FrameParts& parts, FrameAccount& account, std::uint32_t r
     }
 }
 
-/// Faults of a request. They matter only if faces within its reach are still coarse.
+/// Faults of a request, which count only if faces within its reach are still coarse; an
+/// inconsistent model always counts.
 FrameFault Refinement::lateness_of(std::uint32_t request) const noexcept
 {
     const FrameFault found = services_[request].found;

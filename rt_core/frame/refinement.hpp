@@ -13,17 +13,18 @@
 namespace tactus
 {
 
-/// Second stage of a frame: gathers the pairs' requests to their models, merges records that all
-/// left behind, and shares the frame's splits among waiting requests (SplitShares). Work that may
-/// wait, merges and splits ahead of the tools, has a steady pace (WorkPace). Haptic thread.
+/// Second stage of a frame: gathers the pairs' requests to their models, merges records that no
+/// request needs, and shares the frame's splits among waiting requests (SplitShares). Merges and
+/// splits ahead of the tools may wait and have a steady pace (WorkPace). Haptic thread.
 class Refinement
 {
 public:
-    /// If tools are meshes, trees are refitted at once, since others query their surfaces.
+    /// `has_meshes`: tools are meshes, so each model is refitted at once after a change, as others
+    /// query its surface.
     explicit Refinement(bool has_meshes) noexcept : has_meshes_(has_meshes) {}
 
-    /// Returns the class of highest priority of pairs for which a face did not fit,
-    /// kPriorityClasses if all did.
+    /// Runs the stage. Returns the highest priority class of a pair for which a face did not fit;
+    /// kPriorityClasses: none.
     [[nodiscard]] std::uint32_t run(FrameParts& parts,
                                     FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
@@ -40,14 +41,14 @@ private:
 
     bool has_meshes_{false};
     WorkPace pace_;
-    bool had_no_room_{false}; ///< The last frame lacked capacity for a need.
-    RefineRequests requests_; ///< Requests in the order of their pairs.
-    RefineRequests by_model_; ///< The same, grouped by model.
-    /// Last service of a request in this frame.
+    bool had_no_room_{false}; ///< True if the last frame lacked capacity.
+    RefineRequests requests_; ///< Requests in the order of their pairs' priority.
+    RefineRequests by_model_; ///< The same requests, grouped by model.
+    /// Result of the last service of a request in this frame.
     struct Service
     {
-        SplitLimits limits;      ///< Limits at that time.
-        std::uint32_t splits{0}; ///< Splits of the frame by then.
+        SplitLimits limits;      ///< Limits on the splits at that time.
+        std::uint32_t splits{0}; ///< Number of splits in this frame after the service.
         FrameFault found{FrameFault::none};
     };
     std::array<Service, kMaxRequests> services_{};

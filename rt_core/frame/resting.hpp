@@ -8,24 +8,25 @@
 namespace tactus
 {
 
-/// Skips work that would only repeat the last frame: a whole frame, the answer of a tool, the
+/// Skips work that would only repeat the last frame's: a whole frame, a tool's answer, or the
 /// update of a model. Haptic thread.
 class Resting
 {
 public:
-    /// True if this frame would repeat the last one, so every stage can be skipped: its outputs and
-    /// faults stay. Called after the tools have begun, in a scene without changes.
+    /// True if this frame would repeat the last one: every stage is skipped, and outputs and faults
+    /// stay. Called after the tools have begun, in a scene without changes.
     [[nodiscard]] bool try_rest(const FrameParts& parts,
                                 FrameAccount& account) const noexcept TACTUS_NONBLOCKING;
 
-    /// Finds, before the queries, the tools that answer as in the last frame (ToolStatus::rests).
+    /// Finds the tools that repeat their last answer (ToolStatus::rests), before the queries.
     static void find_tools(FrameParts& parts, FrameAccount& account) noexcept TACTUS_NONBLOCKING;
 
-    /// Ends the frame: finds whether the next one may rest, and which models do.
+    /// Ends the frame: finds whether the next frame may rest, and which models are no longer busy.
     void end_frame(FrameParts& parts) noexcept TACTUS_NONBLOCKING;
 
 private:
-    bool may_rest_{false}; ///< Every tool rested in the last frame, and every model is complete.
+    /// True if every tool rested in the last frame, and every busy model was complete.
+    bool may_rest_{false};
 };
 
 } // namespace tactus

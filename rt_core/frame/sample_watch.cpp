@@ -17,12 +17,12 @@ namespace
 
 bool is_in_range(const Vec3& point) noexcept
 {
-    // Comparisons are false for NaN.
+    // Comparisons with NaN are false.
     return std::abs(point.x()) < kGoalRange_m && std::abs(point.y()) < kGoalRange_m &&
            std::abs(point.z()) < kGoalRange_m;
 }
 
-/// False for a device without a clock: its time is 0 and it is never late.
+/// False for a device without a clock: its time is 0, and no sample is late.
 bool tells_time(const ToolState& sample) noexcept
 {
     return sample.sample_time_ns != 0;
@@ -33,7 +33,7 @@ bool turns(const ToolSpec& spec) noexcept
     return !std::holds_alternative<PointCore>(spec.core);
 }
 
-/// Angle in rad. Both must be rotations to kRotationTolerance.
+/// Angle between two rotations in rad. Both must be rotations to kRotationTolerance.
 double angle_between(const Mat3& from, const Mat3& to) noexcept
 {
     return from == to ? 0.0 : rotation_vector(orthonormalised(to * from.transpose())).norm();

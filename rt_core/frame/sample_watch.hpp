@@ -13,42 +13,44 @@
 namespace tactus
 {
 
-/// Checks the samples of one tool's device: decides which are taken, and reports a fault if they
-/// can't be trusted, so that ForceFader fades the force.
+/// Checks the samples of one tool's device: decides which are taken as the goal, and reports a
+/// fault for those that can't be trusted, for which ForceFader fades the force.
 ///
-/// A sample that is not finite, out of range, no rotation or older than the one before is not
-/// taken; the goal stays. A sample with the time of the one before is not taken either: a device
-/// may be slower than the frame. The last sample replaces missing ones for kSampleHold_s; then the
-/// device is stuck. A goal that jumps or rotates farther than a user can is taken, but reported as
-/// a jump. The jump ends when the springs between goal and proxy are within the device's range: a
-/// device that lost its place must not pull towards the old one. A sphere's rotation is ignored.
-/// Haptic thread.
+/// A sample is not taken if it is not finite, out of range, no rotation, or older than the last
+/// one; the goal stays. A sample with the time of the last one is not taken either, as a device may
+/// be slower than the frame. The last sample replaces missing ones for kSampleHold_s; then the
+/// device is stuck.
+///
+/// A goal that moves or rotates farther than a user can is taken, but reported as a jump. The jump
+/// ends when the springs between goal and proxy are within the device's range, so that the device
+/// does not pull towards the old place. A sphere's rotation is not checked for jumps. Haptic
+/// thread.
 class SampleWatch
 {
 public:
     struct Verdict
     {
         bool is_taken{false};
-        bool is_first{false}; ///< No earlier sample exists.
+        bool is_first{false}; ///< True if no sample was taken before.
         /// Time since the last sample taken; undefined for the first.
         double since_s{0.0};
         FrameFault fault{FrameFault::none};
     };
 
     /// Judges a sample, once per frame and tool. `elapsed_s` is the time since the last frame,
-    /// `goal` that of the last sample taken. After kSampleHold_s + kFadeTime_s without a sample the
-    /// device's clock may have restarted: then an earlier time is taken.
+    /// `goal` that of the last sample taken. After kSampleHold_s + kFadeTime_s without a sample,
+    /// one with an earlier time is taken: the device's clock may have restarted.
     [[nodiscard]] Verdict judge(const ToolState& sample, const ToolSpec& spec,
                                 const ProxyGoal& goal,
                                 double elapsed_s) noexcept TACTUS_NONBLOCKING;
 
     /// Ends a jump if the springs between proxy and goal are within the device's range; called once
-    /// the frame's force is known.
+    /// the force of the frame is known.
     void look_for_return(const ToolOutput& output, const ToolSpec& spec,
                          const ProxyGoal& goal) noexcept TACTUS_NONBLOCKING;
 
-    /// Fault of the device after this frame: that of the last verdict, and tool_jumped until a
-    /// force may follow the goal.
+    /// Fault of the device after this frame: the last verdict's, and tool_jumped until the jump has
+    /// ended.
     [[nodiscard]] FrameFault fault() const noexcept TACTUS_NONBLOCKING
     {
         return has_lost_place_ ? fault_ | FrameFault::tool_jumped : fault_;

@@ -14,8 +14,8 @@
 namespace tactus
 {
 
-/// Applies the changes of a frame's scene before anything else, so that the whole frame sees one
-/// scene. A change that can't be made is refused and changes nothing. Haptic thread.
+/// Applies the changes of the scene before any stage, so that the whole frame sees one scene. A
+/// change that can't be made is refused and changes nothing. Haptic thread.
 class SceneChanges
 {
 public:
@@ -38,7 +38,7 @@ private:
                                                  Neighbours& neighbours) noexcept;
 
     std::span<bool>
-        is_shown_; ///< Entry of each model: true if objects may show it, since no tool is it.
+        is_shown_; ///< True for each model that objects may show; false for models of mesh tools.
 };
 
 } // namespace tactus

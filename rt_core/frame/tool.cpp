@@ -14,25 +14,26 @@ namespace tactus
 namespace
 {
 
-/// Margin of the reach beyond the proxy's possible motion, as a share of the tool's radius: a front
-/// that lags by a frame or two still holds the needed surface.
+/// Margin of the reach beyond the proxy's possible motion, as a share of the tool's radius. So a
+/// front that lags by a frame or two still holds the needed surface.
 constexpr double kReachMargin = 0.05;
 
-/// Time ahead for which a second sphere is refined, so that the front is ready for the tool: a
-/// contact needs about 600 splits at 1 M faces, ten frames of 64.
+/// Time ahead, in seconds, for which a second place is refined, so that the surface is ready for
+/// the tool. A contact needs about 600 splits at 1 M faces, ten frames of 64.
 constexpr double kApproachTime_s = 0.01;
 
-/// Time ahead for which chunks are requested within the tool's possible motion.
+/// Time ahead, in seconds, for which chunks are requested within the tool's possible motion.
 constexpr double kNearTime_s = 0.15;
 
-/// Rotation vector about the world's axes.
+/// Rotation vector, about the world's axes, from one rotation to another.
 Vec3 rotation_between(const Mat3& from, const Mat3& to) noexcept
 {
     return from == to ? Vec3(0.0, 0.0, 0.0)
                       : rotation_vector(orthonormalised(to * from.transpose()));
 }
 
-/// Expected displacement of a body in a frame; infinity if it has no expectation.
+/// Expected displacement of a tool's body (Proxy, RigidProxy or Follower) in a frame; infinite if
+/// it has no expectation.
 double likely_way_m(const auto& body) noexcept
 {
     if constexpr (requires { body.likely_way_m(); })
@@ -48,15 +49,15 @@ double likely_way_m(const auto& body) noexcept
 } // namespace
 
 Tool::Tool(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
-    : spec_(spec), body_(make_body(spec, planes))
+    : spec_(spec), state_(make_state(spec, planes))
 {
     const PlacedCore core(spec.core, Similarity{});
     sphere_ = {core.center(), core.radius()};
 }
 
-Tool::Body Tool::make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
+Tool::State Tool::make_state(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
 {
-    if (is_held_as_body(spec))
+    if (is_held_as_rigid(spec))
     {
         TACTUS_ASSERT(planes != nullptr);
         return RigidProxy(spec, *planes);
@@ -68,7 +69,7 @@ Tool::Body Tool::make_body(const ToolSpec& spec, RigidProxy::Planes* planes) noe
     return Proxy(spec);
 }
 
-/// Like std::visit, which would need an exception.
+/// Calls `function` with the alternative in `body`, like std::visit, which may throw.
 template <typename Function>
 auto Tool::with(auto& body, const Function& function) noexcept
 {
@@ -95,7 +96,7 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     const FrameFault fault = take(sample);
     is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && !leapt_by_ &&
                 goal_ == last && goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
-    with(body_,
+    with(state_,
          [&](auto& body)
          {
              body.see(goal_);
@@ -104,13 +105,14 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
              stand(body);
          });
     began_m_ = sphere().center;
-    // A mesh in contact is refined ahead by its motion: see MeshPair.
+    // A mesh in contact is refined ahead by its own motion (MeshPair).
     const double ahead_s = output_.in_contact && is_mesh(spec_) ? 0.0 : kApproachTime_s;
     placement_.approach_m = ahead_s * goal_.velocity_m_per_s;
     return fault;
 }
 
-/// Without moving objects this costs nothing.
+/// Lets moved objects carry the body, and measures the motion; without near objects there is
+/// nothing to measure.
 void Tool::let_carry(auto& body, std::span<const NearObject> objects) noexcept
 {
     has_motion_ = !objects.empty();
@@ -129,13 +131,12 @@ void Tool::let_carry(auto& body, std::span<const NearObject> objects) noexcept
 
 bool Tool::is_held() const noexcept
 {
-    const auto* const rigid = std::get_if<RigidProxy>(&body_);
+    const auto* const rigid = std::get_if<RigidProxy>(&state_);
     return rigid != nullptr ? rigid->is_joined() : !spec_.query_only;
 }
 
-/// Updates the placement. The reach covers the body's possible way to the goal. For a mesh it is
-/// limited to the expected way, as surface in reach costs a hundred times as much as for another
-/// body.
+/// Updates the placement. The reach covers the body's possible way to the goal. Only the expected
+/// way counts for a mesh, as surface in reach costs a hundred times as much as for other tools.
 void Tool::stand(const auto& body) noexcept
 {
     const double likely_m = is_mesh(spec_) ? likely_way_m(body) : kInfinity;
@@ -173,8 +174,8 @@ FrameFault Tool::take(const ToolState& sample) noexcept
     return verdict.fault;
 }
 
-/// True if an object that the tool touches or may meet moved farther in one frame than the stretch
-/// for the device's largest force.
+/// True if an object that the tool touches or may meet jumped: it moved by more than leap_m() in
+/// one frame.
 bool Tool::is_jump(const NearObject& object) const noexcept
 {
     const Sphere reach = reach_sphere();
@@ -183,7 +184,7 @@ bool Tool::is_jump(const NearObject& object) const noexcept
            (output_.in_contact || object.lower_m <= spec_.radius_m + kTouchSlack_m + way_m);
 }
 
-/// Motion of objects whose surface may be at the tool. Farther ones change no force in this frame.
+/// Motion of objects whose surface may be at the tool; others change no force in this frame.
 Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
 {
     Motion motion;
@@ -197,8 +198,8 @@ Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
         const double way_m =
             way_in_sphere_m(*object.before, *object.now, reach.center, reach.radius);
         motion.object_way_m = std::max(motion.object_way_m, way_m);
-        motion.object_turn_rad =
-            std::max(motion.object_turn_rad,
+        motion.object_rotation_rad =
+            std::max(motion.object_rotation_rad,
                      rotation_between(object.before->rotation, object.now->rotation).norm());
     }
     return motion;
@@ -207,10 +208,10 @@ Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
 void Tool::forget(const PlacedSurface& gone) noexcept
 {
     lost_object_ = lost_object_ || (output_.in_contact && gone.lower_m <= placement_.reach_m);
-    with(body_, [&gone](auto& body) { body.forget(gone.object); });
+    with(state_, [&gone](auto& body) { body.forget(gone.object); });
 }
 
-/// The core's sphere moves straight in the object's frame.
+/// Tests the straight path of the core's bounding sphere in the object's frame.
 void Tool::look_for_leap(const ObjectPose& before, const ObjectPose& now,
                          const Sphere& object) noexcept
 {
@@ -237,7 +238,7 @@ double Tool::near_m() const noexcept
 
 bool Tool::try_go_on(double& clear_m) noexcept
 {
-    if (auto* const proxy = std::get_if<Proxy>(&body_); proxy != nullptr)
+    if (auto* const proxy = std::get_if<Proxy>(&state_); proxy != nullptr)
     {
         way_left_m_ -= proxy->went_m();
         if (!proxy->goes_on() || way_left_m_ <= 0.0)
@@ -249,7 +250,7 @@ bool Tool::try_go_on(double& clear_m) noexcept
         stand(*proxy);
         return true;
     }
-    auto* const body = std::get_if<RigidProxy>(&body_);
+    auto* const body = std::get_if<RigidProxy>(&state_);
     if (body == nullptr || !body->goes_on())
     {
         return false;
@@ -263,13 +264,13 @@ bool Tool::try_go_on(double& clear_m) noexcept
 ToolOutput Tool::step(std::span<const PlacedSurface> surfaces, double clear_m,
                       std::uint32_t& planes) noexcept
 {
-    if (auto* const proxy = std::get_if<Proxy>(&body_); proxy != nullptr)
+    if (auto* const proxy = std::get_if<Proxy>(&state_); proxy != nullptr)
     {
         const ToolOutput output = proxy->respond(goal_, surfaces, clear_m, planes);
         planes = proxy->planes_left();
         return output;
     }
-    return with(body_, [&](auto& body) { return body.respond(goal_, surfaces, clear_m); });
+    return with(state_, [&](auto& body) { return body.respond(goal_, surfaces, clear_m); });
 }
 
 ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
@@ -281,7 +282,7 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
     if (has_motion_ && !lost_object_) // A jump does not count as motion.
     {
         output.object_way_m = motion_.object_way_m;
-        output.object_turn_rad = motion_.object_turn_rad;
+        output.object_rotation_rad = motion_.object_rotation_rad;
         output.carried_m = motion_.carried_m;
         output.carried_rad = motion_.carried_rad;
     }
@@ -295,12 +296,12 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
 
 double Tool::radius_m() const noexcept
 {
-    return with(body_, [](const auto& body) { return body.radius_m(); });
+    return with(state_, [](const auto& body) { return body.radius_m(); });
 }
 
 std::span<const Vec3> Tool::path_m() const noexcept
 {
-    const auto* proxy = std::get_if<Proxy>(&body_);
+    const auto* proxy = std::get_if<Proxy>(&state_);
     return proxy != nullptr ? proxy->path_m() : std::span<const Vec3>{};
 }
 

@@ -10,7 +10,7 @@ namespace tactus
 namespace
 {
 
-/// The tool's specification; for a mesh with data of its model's header.
+/// Returns the tool's specification; for a mesh with origin and extent from its model's header.
 [[nodiscard]] ToolSpec described(const ToolSpec& tool, const FrameSetup& setup) noexcept
 {
     ToolSpec spec = tool;
@@ -32,7 +32,7 @@ ToolSet::ToolSet(Arena& arena, const FrameSetup& setup) noexcept
     : tools_(arena.take<Tool>(setup.tools.size()))
     , planes_(arena
                   .take<RigidProxy::Planes>(
-                      std::ranges::any_of(setup.tools, &Tool::is_held_as_body) ? 1 : 0)
+                      std::ranges::any_of(setup.tools, &Tool::is_held_as_rigid) ? 1 : 0)
                   .data())
 {
     for (std::size_t i = 0; i < setup.tools.size() && !arena.is_measuring(); ++i)
@@ -71,7 +71,8 @@ FrameFault ToolSet::begin(std::span<const ToolState> samples, const AwakePairs& 
                 near.push_back(pair->near());
             }
         }
-        if (!near.empty()) // Moved objects may carry the tool past objects at rest.
+        // Objects at rest are added, as moved objects may carry the tool past them.
+        if (!near.empty())
         {
             for (Pair* pair : pairs.of(i))
             {

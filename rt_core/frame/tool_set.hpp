@@ -16,22 +16,23 @@
 namespace tactus
 {
 
-/// State of a tool that one stage of a frame passes to later ones.
+/// Data of a tool that stages of a frame pass to later stages.
 struct ToolStatus
 {
     bool is_resident{true};
-    /// ToolOutput::clear_m, or below zero if nothing is known yet.
+    /// Value for ToolOutput::clear_m; below zero if nothing is known yet.
     double clear_m{0.0};
-    bool exceeds_capacity{false}; ///< The tool needs more than clear_m in this frame.
-    /// The tool repeats its last answer in this frame.
+    /// True if the tool's reach is larger than clear_m in this frame.
+    bool exceeds_capacity{false};
+    /// True if the tool repeats its last answer in this frame.
     bool rests{false};
 };
 
-/// A frame's tools, which of them are present, and their outputs. Haptic thread.
+/// Tools of a frame, their status and outputs. Haptic thread.
 class ToolSet
 {
 public:
-    /// The tools of the set-up, whose headers must parse; all are present.
+    /// Makes the tools of the set-up, whose models' headers must parse; all are present.
     ToolSet(Arena& arena, const FrameSetup& setup) noexcept;
 
     [[nodiscard]] std::uint32_t size() const noexcept
@@ -55,18 +56,19 @@ public:
         return std::span(outputs_).first(tools_.size());
     }
 
-    /// Adds or removes a tool without pairs; it starts without history.
+    /// Adds a tool, or removes it, with `is_resident` false. It must have no pairs, and starts
+    /// without history.
     void renew(std::uint32_t tool, bool is_resident) noexcept TACTUS_NONBLOCKING;
 
-    /// Begins the frame: each present tool takes its sample and moves with the objects that carry
-    /// it. `period_ns` > 0 is the loop's. Returns the samples' faults.
+    /// Begins the frame: each present tool takes its sample and moves with objects that carry it.
+    /// `period_ns` > 0 is the loop's period. Returns the samples' faults.
     /// - `samples`: one for each tool (asserted).
     [[nodiscard]] FrameFault begin(std::span<const ToolState> samples, const AwakePairs& pairs,
                                    std::int64_t period_ns) noexcept TACTUS_NONBLOCKING;
 
 private:
     std::span<Tool> tools_;
-    RigidProxy::Planes* planes_{nullptr}; ///< Shared by all rigid tools.
+    RigidProxy::Planes* planes_{nullptr}; ///< Scratch memory that all rigid tools share.
     std::array<ToolStatus, kMaxTools> status_{};
     std::array<ToolOutput, kMaxTools> outputs_{};
 };

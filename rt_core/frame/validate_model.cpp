@@ -26,7 +26,7 @@ Flaw find_flaw(const Model& model) noexcept
                       model.pages.owner(), "has pages");
         flaw = flaw.is_none() ? finder.first() : flaw;
     }
-    // An arriving or leaving model is not whole.
+    // A forest is only checked if resident: before and after, the model is not whole.
     return flaw.is_none() && model.is_resident() ? find_flaw(model.forest) : flaw;
 }
 

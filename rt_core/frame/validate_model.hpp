@@ -9,14 +9,15 @@
 namespace tactus
 {
 
-/// Checks the invariants of a model's pages, cache, forest and tree at the end of a frame, in order
-/// of their dependencies. About 50 ns for each face, record and slot in use.
+/// Checks the invariants of a model's pages, cache, forest and tree at the end of a frame. Returns
+/// the first flaw, in the order of their dependencies. About 50 ns for each face, record and slot
+/// in use.
 [[nodiscard]] Flaw find_flaw(const Model& model) noexcept TACTUS_NONBLOCKING;
 
-/// Fails an assertion if there is a flaw; TACTUS_VALIDATE adds it to every frame.
+/// Asserts that a model has no flaw.
 void require_sound(const Model& model) noexcept TACTUS_NONBLOCKING;
 
-/// require_sound() in builds with TACTUS_VALIDATE; otherwise nothing.
+/// Calls require_sound() in builds with TACTUS_VALIDATE; otherwise does nothing.
 inline void validate([[maybe_unused]] const Model& model) noexcept TACTUS_NONBLOCKING
 {
 #ifdef TACTUS_VALIDATE

@@ -10,15 +10,16 @@ namespace tactus
 namespace
 {
 
-/// Shares of a frame's work that may be used by the end of each stage.
+/// Shares of a frame's work that may be used by the end of each stage; kWarming is for warming
+/// caches.
 constexpr double kLoading = 0.3;
 constexpr double kRefiningLeast = 0.25;
 constexpr double kRefiningMost = 0.6;
 constexpr double kQueries = 0.9;
-constexpr double kRehearsal = 0.25;
-/// Allowed work of the answers, relative to the last frame.
+constexpr double kWarming = 0.25;
+/// Work reserved for queries and forces, as a multiple of that in the last frame.
 constexpr double kMoreAnswers = 1.1;
-/// Work reserved for each later query, if as much is left.
+/// Instructions reserved for each later query, if as much is left.
 constexpr std::uint32_t kQueryKept = 20'000;
 constexpr std::uint32_t kPlanesLeast = 16;
 
@@ -75,7 +76,7 @@ std::uint32_t WorkShares::planes() const noexcept
 
 WorkBudget WorkShares::for_warming() const noexcept
 {
-    return WorkBudget(part(kRehearsal));
+    return WorkBudget(part(kWarming));
 }
 
 } // namespace tactus

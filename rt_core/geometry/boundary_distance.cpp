@@ -19,8 +19,8 @@ namespace tactus
 namespace
 {
 
-/// Distance, in local lengths, beyond which a place that is wrong by kFilterMargin changes the
-/// distance by its square only.
+/// Distance of edges, in local lengths, beyond which an error of kFilterMargin in a place changes
+/// the distance only by its square.
 constexpr double kFarApart = 1e-6;
 
 enum class Kind : std::uint8_t
@@ -36,13 +36,14 @@ struct Candidate
     Kind kind;
     std::uint32_t i;
     std::uint32_t j;
-    /// Bit of the pair: edges that meet in the nearest corner find the same pair. None if double
-    /// can't tell the pair, or another place would change the distance.
+    /// Bit of this pair of features, so that edges that meet at one nearest corner are decided only
+    /// once. 0 if double is not accurate enough to name the pair.
     std::uint64_t pair;
     double distance;
 };
 
-/// Filters all pairs of features, then decides between those that may be nearest.
+/// Search for the nearest boundary points: filters all pairs of features, then decides between
+/// those that may be nearest.
 class BoundaryDistance
 {
 public:
@@ -99,7 +100,7 @@ private:
         }
     }
 
-    /// Adds a corner, without an upper bound: it may still be beside the face.
+    /// Adds a corner over a face. It gives no upper bound, as it may still be beside the face.
     void add_corner(const Candidate& candidate) noexcept
     {
         if (candidate.distance < kInfinity)
@@ -178,7 +179,7 @@ private:
                        feature_of_edge(j, to_double(at.second_parameter)));
     }
 
-    /// Keeps the nearer one; ties go to the first candidate.
+    /// Keeps these points if they are nearer than the best so far; ties keep the earlier ones.
     void keep_if_nearer(const Triple<DoubleDouble>& from, const Triple<DoubleDouble>& gap,
                         TriangleFeature feature_of_first, TriangleFeature feature) noexcept
     {
@@ -200,7 +201,7 @@ private:
     double length_;
     double upper_{kInfinity};
     StaticVector<Candidate, 15> candidates_;
-    std::uint64_t separated_{0}; ///< Pairs already decided.
+    std::uint64_t separated_{0}; ///< Bits of the pairs that were already decided.
     DoubleDouble best_sq_{kInfinity};
     ClosestPoints best_{.distance = kInfinity};
 };

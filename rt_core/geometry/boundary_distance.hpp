@@ -9,19 +9,19 @@
 namespace tactus
 {
 
-/// Nearest points of the boundaries of a segment or a triangle (`corners`, two or three) and a
-/// triangle: of edges and edges, and of corners and faces. If an edge pierces a face they are not
-/// those of the shapes, which the caller must know.
+/// Nearest points of the boundaries of a shape and a triangle: of edges and edges, and of corners
+/// and faces. The shape is a segment or a triangle with these `corners`. The results are nearest
+/// points of the shapes only if no edge pierces a face.
 ///
-/// All pairs of features are compared in double, and those that it can't separate in double-double,
-/// so |computed - true| <= 4e-16 x local length for any shape. `meet` is left false. The largest
-/// coordinate must be between 2^-60 and 2^60.
+/// All pairs of features are compared in double, and those that double can't separate in
+/// double-double. So |computed - true| <= 4e-16 x local length for any shape. `meet` is left false.
+/// The largest coordinate must be between 2^-60 and 2^60.
 [[nodiscard]] ClosestPoints
 nearest_boundary_points(std::span<const Vec3> corners,
                         const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 
-/// The longest of both shapes' edges and of the distances between their corners: the unit of the
-/// law above.
+/// Local length, the unit of the error law above: the longest of both shapes' edges and of the
+/// distances between their corners.
 [[nodiscard]] double local_length(std::span<const Vec3> corners,
                                   const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 

@@ -20,8 +20,8 @@ namespace tactus
 namespace
 {
 
-/// Distance, in local lengths, at which an edge shares a point with the box: double-double's
-/// rounding.
+/// Distance, in local lengths, up to which an edge counts as meeting the box: the rounding of
+/// double-double.
 constexpr double kTouching = 1e-25;
 
 Vec3 farthest_corner(const Box& box, const Vec3& direction) noexcept
@@ -42,7 +42,7 @@ bool has_corner_inside(const Box& box, const Triangle& triangle) noexcept
            is_inside(box, triangle[2]);
 }
 
-/// Middle of the segment's part in the box, if there is one. Rounded.
+/// Parameter of the middle of the segment's part in the box, if there is one; rounded.
 double middle_inside(const Box& box, const Segment& segment) noexcept
 {
     double low = 0.0;
@@ -75,8 +75,8 @@ bool is_beyond_a_side(const Box& box, const Triangle& triangle) noexcept
     return false;
 }
 
-/// True if a line through one of the triangle's edges separates box and triangle, seen along an
-/// axis, as a rectangle and a triangle.
+/// True if box and triangle, projected along `axis` to a rectangle and a triangle, are separated by
+/// a line through one of the triangle's edges.
 bool has_edge_between_along(std::size_t axis, const Box& box, const Triangle& triangle) noexcept
 {
     const Vec2 half = seen_along(axis, box.half);
@@ -116,14 +116,15 @@ double local_length(const Box& box, const Triangle& triangle) noexcept
     return std::sqrt(longest_sq);
 }
 
-/// Vector from the box to a point that is not inside, each coordinate rounded once.
+/// Vector from the box to a point that is not inside of it, each coordinate rounded once.
 Vec3 gap_to(const Box& box, const Vec3& point) noexcept
 {
     return {excess(point.x(), box.half.x()), excess(point.y(), box.half.y()),
             excess(point.z(), box.half.z())};
 }
 
-/// Distances of the triangle's edges from the box, and of a corner of the box from the face.
+/// Search for the nearest points, by the distances of the triangle's edges from the box, and of a
+/// corner of the box from the face.
 class BoxDistance
 {
 public:
@@ -175,7 +176,8 @@ private:
         return {triangle_[i], triangle_[(i + 1) % 3]};
     }
 
-    /// Corner of the box along `normal`; the box's centre is the origin.
+    /// Corner of the box that is farthest along `normal`, towards the triangle; the box's centre is
+    /// the origin.
     [[nodiscard]] Vec3 corner_towards(const Vec3& normal) const noexcept
     {
         return farthest_corner(box_, normal.dot(triangle_[0]) < 0.0 ? Vec3(-normal) : normal);
@@ -188,8 +190,8 @@ private:
         return best_;
     }
 
-    /// First corner of the triangle over a side of the box, if both others are no nearer to that
-    /// side: no point of the triangle is nearer. Decided exactly.
+    /// Finds the first corner of the triangle that is over a side of the box with both other
+    /// corners no nearer to that side, so that it is the nearest point. Decided exactly.
     [[nodiscard]] std::optional<std::size_t> find_corner_over_a_side() const noexcept
     {
         for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -215,7 +217,7 @@ private:
         return std::nullopt;
     }
 
-    /// The triangle's corner nearest to the box, if proven: both others are farther along the
+    /// Finds the triangle's corner nearest to the box, if proven: both others are farther along the
     /// vector from the box to it, by more than rounding.
     [[nodiscard]] std::optional<std::size_t> find_nearest_corner() const noexcept
     {
@@ -250,9 +252,8 @@ private:
             static_cast<TriangleFeature>(i));
     }
 
-    /// Shared point of the box and a triangle without a corner in it: a point of an edge that meets
-    /// the box. If none does, the face cuts through the box, and so through the diagonal to the
-    /// corner on its side.
+    /// Finds a shared point of the box and a triangle that has no corner in it: a point of an edge
+    /// that meets the box. If no edge does, the face cuts the diagonal of the box towards its side.
     [[nodiscard]] ClosestPoints find_shared_point() noexcept
     {
         for (std::size_t i = 0; i < 3; ++i)
@@ -284,7 +285,7 @@ private:
                           TriangleFeature::interior);
     }
 
-    /// Distances of the edges in double.
+    /// Computes the distances of the edges from the box, in double.
     void see_edges() noexcept
     {
         for (std::size_t i = 0; i < 3; ++i)
@@ -313,7 +314,7 @@ private:
                        at.gap, feature_of_edge(i, to_double(at.parameter)));
     }
 
-    /// Keeps the nearer one; ties go to the first candidate.
+    /// Keeps these points if they are nearer than the best so far; ties keep the earlier ones.
     void keep_if_nearer(const Triple<DoubleDouble>& on_triangle, const Triple<DoubleDouble>& gap,
                         TriangleFeature feature) noexcept
     {

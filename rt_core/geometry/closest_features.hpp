@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-// Nearest points of two features: each in double, which filters, and in double-double, which
-// decides (exact to about 1e-30 of the lengths, with the exceptions in its comment).
+// Nearest points of two features, in double for a filter, and in double-double for a decision.
+// Double-double is exact to about 1e-30 of the lengths, with the exceptions in each comment.
 
 template <typename Real>
 [[nodiscard]] Real clamp_to_unit(const Real& value) noexcept
@@ -22,23 +22,24 @@ template <typename Real>
     return !(value > Real{0.0}) ? Real{0.0} : (value > Real{1.0} ? Real{1.0} : value);
 }
 
-/// Points from + parameter (to - from) on two segments, and the vector from the first to the
-/// second.
+/// Nearest points of two segments, as parameters of from + parameter (to - from), and the vector
+/// from the first point to the second.
 template <typename Real>
 struct SegmentsApproach
 {
     Real first_parameter;
     Real second_parameter;
     Triple<Real> gap;
-    /// Parallel within 1e-6: double may be wrong about which features are nearest.
+    /// True if the segments are parallel within 1e-6: double may then be wrong about which features
+    /// are nearest.
     bool is_parallel;
 };
 
-/// The place where two lines are nearest is solved with their cross product n: s = -((p - q) x v) .
-/// n / n.n. Unlike the Gram determinant |u|^2 |v|^2 - (u.v)^2 that is no difference of nearly equal
-/// numbers. With roundings of r (2^-53 or 2^-104), lines at a distance h and at an angle a, the
-/// place is off by r in lengths and h r / a along the lines, so across by at most min(h r / a, a)
-/// <= sqrt(h r), which makes the distance wrong by h r / 2h: by a few roundings at any angle.
+/// Solves for the nearest points of two lines by their cross product n: s = -((p - q) x v) . n /
+/// n.n. Unlike the Gram determinant |u|^2 |v|^2 - (u.v)^2, n.n is no difference of nearly equal
+/// numbers. The distance of the lines is h, their angle a, and a rounding r (2^-53 or 2^-104). The
+/// points are wrong by r in lengths, and by h r / a along the lines. Across the lines this is at
+/// most min(h r / a, a) <= sqrt(h r), which changes the distance by a few roundings at any angle.
 template <typename Real>
 [[nodiscard]] SegmentsApproach<Real> approach_segments(const Segment& first,
                                                        const Segment& second) noexcept
@@ -54,12 +55,14 @@ template <typename Real>
     const Real uv = dot(u, v);
     Real s = nn > zero ? clamp_to_unit(-(dot(cross(w, v), n) / nn)) : zero;
     const Real t = vv > zero ? clamp_to_unit((dot(w, v) + s * uv) / vv) : zero;
-    // Second pass, since t may have been clamped or s undefined: feet of feet are only nearer.
+    // The second pass is needed since t may have been clamped, or s undefined; it only brings the
+    // points nearer.
     s = uu > zero ? clamp_to_unit((t * uv - dot(w, u)) / uu) : zero;
     return {s, t, t * v - w - s * u, !(nn > Real{1e-12} * (uu * vv))};
 }
 
-/// The vector from a point to its foot on a triangle's plane, if that is inside the triangle.
+/// Vector from a point to its foot on a triangle's plane; none if the foot is not inside the
+/// triangle.
 template <typename Real>
 [[nodiscard]] std::optional<Triple<Real>> approach_face(const Vec3& point,
                                                         const Triangle& triangle) noexcept
@@ -83,7 +86,7 @@ template <typename Real>
     return (dot(difference<Real>(triangle[0], point), normal) / normal_sq) * normal;
 }
 
-/// A place on a segment and the vector to it from the nearest point of a box.
+/// Point of a segment nearest to a box, and the vector to it from the nearest point of the box.
 template <typename Real>
 struct BoxApproach
 {
@@ -91,16 +94,17 @@ struct BoxApproach
     Triple<Real> gap;
 };
 
-/// Signed distance of `x` beyond [-half, half].
+/// Signed distance of `x` beyond the range -half .. half; 0 inside.
 template <typename Real>
 [[nodiscard]] Real excess(const Real& x, const Real& half) noexcept
 {
     return x > half ? x - half : (x < -half ? x + half : Real{0.0});
 }
 
-/// Along the segment the squared distance is convex, and quadratic between the places where a
-/// coordinate enters or leaves the box. The slope shows on which side of each of these up to six
-/// places the minimum is; between the last two it is solved.
+/// Search for the point of a segment nearest to a box. The squared distance is convex along the
+/// segment, and quadratic between the up to six places where a coordinate enters or leaves the box.
+/// The slope at each of these shows on which side the minimum is; between the last two it is
+/// solved.
 template <typename Real>
 class SegmentAndBox
 {
@@ -117,8 +121,8 @@ public:
         return place_at(nearest_parameter());
     }
 
-    /// The same with a guess of the place: a third of the work if the guess is proven, otherwise
-    /// the guess is ignored.
+    /// approach() with a guess of the parameter: a third of the work if the guess is proven;
+    /// otherwise the guess is ignored.
     [[nodiscard]] BoxApproach<Real> approach_near(double near) const noexcept
     {
         const std::optional<Real> parameter = solve_near(Real{near});
@@ -127,7 +131,7 @@ public:
 
 private:
     using Coordinates = std::array<Real, 3>;
-    /// Side of each coordinate: before the box (-1), in it or beyond it (1).
+    /// Side of the box for each coordinate: before it (-1), within (0) or beyond (1).
     using Sides = std::array<int, 3>;
 
     static Coordinates as_array(const Triple<Real>& v) noexcept { return {v.x, v.y, v.z}; }
@@ -177,15 +181,16 @@ private:
         return solve_between(low, high);
     }
 
-    /// The minimum, if the same coordinates stay outside of the box.
+    /// Returns the minimum between `low` and `high`, where the same coordinates stay outside of the
+    /// box.
     [[nodiscard]] Real solve_between(const Real& low, const Real& high) const noexcept
     {
         const Real at = solve(sides_at(Real{0.5} * (low + high))).value_or(low);
         return at < low ? low : (at > high ? high : at);
     }
 
-    /// None if the slope there is not proven to be zero, or, at an end, to point out of the
-    /// segment.
+    /// Solves for the minimum with the sides of `near`; none unless the slope there is proven to be
+    /// zero or, at an end, to point out of the segment.
     [[nodiscard]] std::optional<Real> solve_near(const Real& near) const noexcept
     {
         const Real zero{0.0};
@@ -203,7 +208,7 @@ private:
         return at && *at > zero && *at < one && sides_at(*at) == sides ? at : std::nullopt;
     }
 
-    /// Parameter of zero slope if the coordinates were on these sides everywhere.
+    /// Returns the parameter of zero slope if each coordinate were on this side everywhere.
     [[nodiscard]] std::optional<Real> solve(const Sides& sides) const noexcept
     {
         Real towards{0.0};

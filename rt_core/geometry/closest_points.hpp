@@ -16,22 +16,24 @@ struct ClosestPoints
 {
     Vec3 on_shape{0.0, 0.0, 0.0};
     Vec3 on_triangle{0.0, 0.0, 0.0};
-    /// Vector from the first to the second, free of the rounding of large coordinates: its
-    /// direction is good even if the points themselves round to one.
+    /// Vector from on_shape to on_triangle, without the rounding of large coordinates: its
+    /// direction is good even if the two points round to one.
     Vec3 gap{0.0, 0.0, 0.0};
-    /// Zero where they meet; negative for round shapes, down to minus the radius.
+    /// Distance of the two; zero if they meet, negative for overlapping round shapes, down to minus
+    /// the radius.
     double distance{0.0};
-    /// Bound on |computed - true| of the distance: kernel_error.
+    /// Bound on the error |computed - true| of `distance`: kernel_error().
     double distance_error{0.0};
-    /// True if they share a point: exact except for round shapes, which compare `distance`.
+    /// True if the two share a point: exact, except for round shapes, which compare `distance`.
     bool meet{false};
-    /// Feature of the triangle.
+    /// Feature of the triangle at its nearest point.
     TriangleFeature feature{TriangleFeature::interior};
-    /// Feature of the shape, if it is a triangle or a segment (corner_0, corner_1 or edge_0).
+    /// Feature of the shape at its nearest point, if it is a triangle or a segment (corner_0,
+    /// corner_1 or edge_0).
     TriangleFeature shape_feature{TriangleFeature::interior};
 };
 
-/// Result for shapes that meet in a point.
+/// Closest points of shapes that meet in `point`.
 [[nodiscard]] inline ClosestPoints meeting_at(const Vec3& point, TriangleFeature shape_feature,
                                               TriangleFeature feature) noexcept
 {
@@ -44,8 +46,8 @@ struct ClosestPoints
     return result;
 }
 
-/// Result of `solve`(points). If products of coordinates would not be doubles, the points are
-/// multiplied by a power of two and the result is divided by it.
+/// Returns `solve`(points). If products of coordinates would leave the range of double, the points
+/// are multiplied by a power of two first, and the result is divided by it.
 template <std::size_t N, typename Solve>
 [[nodiscard]] ClosestPoints solve_in_range(const std::array<Vec3, N>& points, Solve solve) noexcept
 {

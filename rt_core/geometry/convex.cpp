@@ -27,7 +27,7 @@ Vec3 mean_of(std::span<const Vec3> points) noexcept
     return mean;
 }
 
-/// Radius of the points round a centre, rounded up.
+/// Largest distance of the points from a centre, rounded up.
 double radius_round(const Vec3& center, std::span<const Vec3> points) noexcept
 {
     double largest = 0.0;

@@ -11,27 +11,27 @@
 #include <span>
 #include <utility>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// Error of a support point, in radii: its distance outside of the body, and its shortfall against
-/// the farthest point. Nine roundings, enough to rotate a direction into the body's frame and the
-/// point back.
+/// Largest error of a support point, in radii of the body: its distance outside of the body, and
+/// its shortfall against the farthest point. Nine roundings, enough to rotate a direction into the
+/// body's frame and the point back.
 inline constexpr double kSupportError = 1e-15;
 
-/// A convex and closed body, defined by its farthest points. Lengths have any one unit; metres if
-/// the body is a tool's core.
+/// Convex and closed body, defined by its farthest point in each direction. Lengths have any one
+/// unit; metres if the body is a tool's core.
 struct ConvexBody
 {
-    /// A farthest point of the body in a direction, relative to `center`, so that the body's
-    /// position causes no rounding. The direction's length is 1 within a few roundings. Equal
+    /// Returns a farthest point of the body in a direction, relative to `center`, so that the
+    /// body's position causes no rounding. The direction has length 1 within a few roundings. Equal
     /// directions must give equal points.
     using Support = Vec3 (*)(const void* context,
                              const Vec3& direction) noexcept TACTUS_NONBLOCKING;
 
     Support support{nullptr};     ///< Not null; called on the haptic thread for a tool's body.
-    const void* context{nullptr}; ///< Passed to `support`; outlives the body.
+    const void* context{nullptr}; ///< Argument for `support`; must outlive the body.
     Vec3 center{0.0, 0.0, 0.0};   ///< Centre of the body, well inside if it has an inside.
     double radius{0.0};           ///< Radius of a sphere round the centre that holds the body.
 };
@@ -40,19 +40,19 @@ enum class HullError : std::uint8_t
 {
     no_vertex,
     too_many_vertices, ///< More than kMaxHullVertices.
-    vertex_not_finite, ///< Not finite, or beyond kCoordinateRange.
+    vertex_not_finite, ///< A coordinate is not finite, or beyond kCoordinateRange.
 };
 
-/// The convex hull of vertices, which may be a point, a segment or a polygon; vertices inside of it
-/// are allowed. The vertices remain the caller's and must outlive the hull.
+/// Convex hull of vertices; it may be a point, a segment or a polygon, and vertices may lie inside
+/// of it. The vertices remain the caller's and must outlive the hull.
 class Hull
 {
 public:
     [[nodiscard]] static Result<Hull, HullError>
     create(std::span<const Vec3> vertices) noexcept TACTUS_NONBLOCKING;
 
-    /// A view of this hull, which must not move. Among equally far vertices the first is the
-    /// farthest.
+    /// Returns a view of this hull, which must not move. The first one of equally far vertices is
+    /// the support point.
     [[nodiscard]] ConvexBody body() const noexcept { return {&support, this, center_, radius_}; }
 
     [[nodiscard]] std::span<const Vec3> vertices() const noexcept { return vertices_; }

@@ -10,9 +10,8 @@
 namespace tactus
 {
 
-// A closed triangle meets another exactly if an edge of one meets the other, even if one of them is
-// a segment or a point. This reduces everything to a segment p q and a triangle, and that to fewer
-// dimensions:
+// Two closed triangles meet exactly if an edge of one meets the other, even if one is a segment or
+// a point. This reduces each test to a segment p q and a triangle, and that to fewer dimensions:
 //
 //   p, q not both in the plane   the line p q pierces it once; inside or not: three volumes
 //   both in the plane            seen along an axis that keeps the triangle's area: in the plane,
@@ -35,7 +34,7 @@ bool are_all_on_one_side(const std::array<int, 3>& sides) noexcept
     return sides[0] != 0 && sides[0] == sides[1] && sides[0] == sides[2];
 }
 
-/// True if there are not both positive and negative sides.
+/// True if the sides are not of both signs; zeros count as either sign.
 bool do_not_differ(const std::array<int, 3>& sides) noexcept
 {
     const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
@@ -65,7 +64,7 @@ bool do_boxes_overlap(std::span<const Vec3> first, std::span<const Vec3> second)
     return true;
 }
 
-/// Sides of the ends of two segments, each with respect to the other.
+/// Sides of the ends of two segments, each relative to the line of the other segment.
 struct SegmentSides
 {
     std::array<int, 2> of_second;
@@ -91,7 +90,8 @@ SegmentSides see_along(std::size_t axis, const Segment& first, const Segment& se
             {side_of_line(a, b, p), side_of_line(a, b, q)}};
 }
 
-/// Segments in one plane, along an axis that keeps areas in it; any axis if all is on one line.
+/// True if two segments in one plane meet. `axis` is one along which areas in that plane stay; any
+/// axis if all ends are on one line.
 bool do_segments_meet_along(std::size_t axis, const Segment& first, const Segment& second) noexcept
 {
     const SegmentSides sides = see_along(axis, first, second);
@@ -123,7 +123,8 @@ bool meets_an_edge(const Segment& segment, const Triangle& triangle,
            segments_meet(segment, Segment{triangle[2], triangle[0]});
 }
 
-/// True if the point is in the triangle, seen along an axis that keeps the triangle's area.
+/// True if the point is in the triangle; both are projected along an axis that keeps the triangle's
+/// area.
 bool is_inside_along(std::size_t axis, const Vec3& point, const Triangle& triangle) noexcept
 {
     const Vec2 p = seen_along(axis, point);
@@ -161,7 +162,8 @@ bool meets_from_sides(const Segment& segment, int from, int to, const Triangle& 
                                 : do_not_differ(sides_of_edges(segment.from, segment.to, triangle));
 }
 
-/// `sides`: sides of the other's plane on which the triangle's corners lie.
+/// True if an edge of `triangle` meets `other`. `sides` are the sides of the plane of `other` on
+/// which the triangle's corners lie.
 bool does_an_edge_meet(const Triangle& triangle, const std::array<int, 3>& sides,
                        const Triangle& other) noexcept
 {
@@ -176,7 +178,7 @@ bool does_an_edge_meet(const Triangle& triangle, const std::array<int, 3>& sides
     return false;
 }
 
-/// Feature of a point in the triangle, by the edges that it lies on.
+/// Feature of the triangle that holds a point in it; an edge with a side of 0 holds the point.
 TriangleFeature feature_of_zeros(const std::array<int, 3>& sides) noexcept
 {
     for (std::size_t i = 0; i < 3; ++i)
@@ -208,12 +210,12 @@ std::optional<Piercing> find_piercing_from_sides(const Segment& segment, int fro
     const PlaneVolumes plane(triangle[0], triangle[1], triangle[2]);
     const double from_volume = plane.volume(segment.from);
     const double to_volume = plane.volume(segment.to);
-    // Both may vanish for coordinates out of range.
+    // Both volumes may vanish for coordinates out of range.
     const double share = from_volume == to_volume ? 0.0 : from_volume / (from_volume - to_volume);
     return Piercing{share, feature_of_zeros(sides)};
 }
 
-/// The first of the triangle's edges that pierces the other one.
+/// Finds the first edge of `triangle` that pierces `other`.
 std::optional<EdgePiercing> find_piercing_edge(const Triangle& triangle,
                                                const Triangle& other) noexcept
 {

@@ -11,10 +11,10 @@ namespace tactus
 {
 
 // Exact decisions whether closed shapes share a point, for any shapes (slivers, segments, points,
-// coplanar or touching ones), as long as coordinates are zero or between 1e-85 and 1e85 in
-// magnitude. Nothing here needs the other shape's plane to exist.
+// coplanar or touching ones). Coordinates must be zero or between 1e-85 and 1e85 in magnitude.
 
-/// True if segment and triangle share a point. About 70 ns; 0.3 to 1 us with exact arithmetic.
+/// True if the segment and the triangle share a point. About 70 ns; 0.3 to 1 us with exact
+/// arithmetic.
 [[nodiscard]] bool meet(const Segment& segment,
                         const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 
@@ -24,26 +24,27 @@ namespace tactus
 /// Point in which a segment that is not in the triangle's plane pierces the triangle.
 struct Piercing
 {
-    /// Point from + parameter (to - from), correct to a few units in the last place.
+    /// Parameter of the point from + parameter (to - from); correct to a few units in the last
+    /// place.
     double parameter;
     TriangleFeature feature;
 };
 
-/// None if they don't meet or are in one plane: then an edge meets an edge, or an end of the
-/// segment lies in the triangle.
+/// Finds the point in which a segment pierces a triangle. None if they don't meet or are in one
+/// plane; in one plane they meet at an edge or an end of the segment.
 [[nodiscard]] std::optional<Piercing>
 find_piercing(const Segment& segment, const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 
 /// Point in which an edge of a triangle pierces another triangle.
 struct EdgePiercing
 {
-    const Triangle* triangle; ///< The edge's triangle, one of the two arguments.
+    const Triangle* triangle; ///< Triangle that the edge belongs to: one of the two arguments.
     std::size_t edge;
     Piercing piercing;
 };
 
-/// find_piercing() of the first edge that pierces, edges of `first` before those of `second`; none
-/// if the two don't meet or are in one plane.
+/// Finds the first edge of one triangle that pierces the other; edges of `first` come before those
+/// of `second`. None if the triangles don't meet or are in one plane.
 [[nodiscard]] std::optional<EdgePiercing>
 find_edge_piercing(const Triangle& first, const Triangle& second) noexcept TACTUS_NONBLOCKING;
 

@@ -14,15 +14,16 @@
 namespace tactus
 {
 
-/// Rounding of one comparison of a filter in double, in local lengths; several times the largest
-/// seen.
+/// Allowance for the rounding of one comparison in double, in local lengths; several times the
+/// largest error seen.
 inline constexpr double kFilterMargin = 64.0 * 0x1p-53;
 
-/// Heights of points over a triangle, in double. Points that may be over it count as over it.
+/// Heights of points over a triangle, in double, for filters. Points that may be over the triangle
+/// count as over it.
 class FaceFilter
 {
 public:
-    /// Filter for points up to `length` away from the corners.
+    /// Makes a filter for points up to `length` >= 0 (asserted) away from the corners.
     FaceFilter(const Triangle& triangle, double length) noexcept : corner_(triangle)
     {
         TACTUS_ASSERT(length >= 0.0);
@@ -44,10 +45,11 @@ public:
         }
     }
 
-    /// Zero if the triangle is so thin that its edges represent it.
+    /// Unit normal of the triangle; zero if it is so thin that its edges represent it.
     [[nodiscard]] const Vec3& unit_normal() const noexcept { return unit_normal_; }
 
-    /// Height within kFilterMargin; infinite if the point is not over the triangle.
+    /// Height of a point over the triangle, >= 0, within kFilterMargin; infinite if the point is
+    /// not over it.
     [[nodiscard]] double height_of(const Vec3& point) const noexcept
     {
         for (std::size_t i = 0; i < 3; ++i)
@@ -62,8 +64,9 @@ public:
 
 private:
     Triangle corner_;
-    std::array<Vec3, 3> outward_{}; ///< Edge x unit normal: in the plane, as long as the edges.
-    std::array<double, 3> slack_{}; ///< Rounding of products with `outward_`.
+    /// Vectors edge x unit normal: outward, in the plane, as long as the edges.
+    std::array<Vec3, 3> outward_{};
+    std::array<double, 3> slack_{}; ///< Bounds on the rounding of products with `outward_`.
     Vec3 unit_normal_{0.0, 0.0, 0.0};
     bool has_plane_{false};
 };

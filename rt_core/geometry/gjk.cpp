@@ -18,10 +18,12 @@ namespace tactus
 namespace
 {
 
-// A tetrahedron that holds the origin is near enough, so a simplex never grows beyond one.
+// A tetrahedron that holds the origin ends the search, so a simplex never has more than four
+// corners.
 static_assert(kGjkRounding > 2.0 * kSimplexTouching);
 
-/// Farthest points of both along one direction; the simplex is made of their differences.
+/// Farthest points of body and triangle along one direction; a corner of the simplex is their
+/// difference.
 struct SupportPair
 {
     Vec3 on_body;
@@ -38,8 +40,8 @@ Triangle seen_from(const Vec3& center, const Triangle& triangle) noexcept
     return {triangle[0] - center, triangle[1] - center, triangle[2] - center};
 }
 
-/// One query, relative to the body's centre and multiplied by a power of two so that products of
-/// coordinates are doubles.
+/// State of one query, relative to the body's centre and multiplied by a power of two, so that
+/// products of coordinates stay in the range of double.
 class Gjk
 {
 public:
@@ -83,7 +85,7 @@ private:
         distance_ = gap_.norm();
     }
 
-    /// Iterates until the bounds are near enough or the rest is rounding of `Real`.
+    /// Iterates until the bounds are near enough, or their difference is only rounding of `Real`.
     template <typename Real>
     void approach() noexcept
     {
@@ -113,7 +115,7 @@ private:
         }
     }
 
-    /// Farthest points along a direction; raises the lower bound by their distance.
+    /// Finds the farthest points along a direction, and raises the lower bound to their distance.
     [[nodiscard]] SupportPair find_support(const Vec3& direction) noexcept
     {
         ++iterations_;
@@ -156,7 +158,7 @@ private:
         return SimplexSolver<Real>(points.view(), length_).find(with_last_only);
     }
 
-    /// Keeps only the simplex's corners that hold the foot.
+    /// Keeps only the simplex's corners with a weight at the foot.
     template <typename Real>
     void keep(const SimplexFoot<Real>& foot) noexcept
     {
@@ -175,8 +177,8 @@ private:
         distance_ = gap_.norm();
     }
 
-    /// True if zero is inside of the simplex in spite of its corners' rounding: an error of r in
-    /// each changes the volume before a side by at most r x the areas that its edges span.
+    /// True if zero is inside of the simplex in spite of its corners' rounding. An error of r in
+    /// each corner changes the volume before a side by at most r x the areas that the edges span.
     [[nodiscard]] bool is_overlap_proven() const noexcept
     {
         if (simplex_.size() < 4)
@@ -242,14 +244,14 @@ private:
     Triangle triangle_;
     double scale_;
     double limit_;
-    double length_; ///< Local length.
+    double length_; ///< Local length, the unit of the error law.
     double rounding_;
     StaticVector<SupportPair, 4> simplex_;
     std::array<double, 4> weights_{};
     Vec3 gap_{0.0, 0.0, 0.0};
-    double distance_{0.0}; ///< Distance of the simplex.
-    double lower_{0.0};    ///< Lower bound before it is lowered by rounding; negative if no
-                           ///< direction shows a distance.
+    double distance_{0.0}; ///< Distance of the simplex from zero.
+    /// Lower bound without an allowance for rounding; negative if no direction shows a distance.
+    double lower_{0.0};
     Vec3 lower_direction_{0.0, 0.0, 0.0};
     std::uint32_t iterations_{0};
 };

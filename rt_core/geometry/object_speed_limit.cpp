@@ -20,8 +20,8 @@ Similarity between(const Similarity& from, const Similarity& to, double share) n
     return place;
 }
 
-/// A point moves by the centre's displacement plus its distance times the growth of the scale and
-/// the chord of the angle. The chord is the norm of the rotations' difference over sqrt(2).
+/// Sum of three displacements: of the centre, by the growth of the scale, and by the rotation, as
+/// the chord of its angle. The chord is the norm of the rotations' difference over sqrt(2).
 double way_in_sphere_m(const Similarity& from, const Similarity& to, const Vec3& center_m,
                        double radius_m) noexcept
 {

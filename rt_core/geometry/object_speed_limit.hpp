@@ -6,12 +6,12 @@
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/similarity.hpp"
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// Pose between two others at `share` of the motion; the rotation takes the short way round, at a
-/// speed that is even to a twentieth up to 45 degrees.
+/// Pose between `from` and `to`, at `share` of the motion. The rotation takes the shorter way; up
+/// to 45 degrees its speed is even to a twentieth.
 [[nodiscard]] Similarity between(const Similarity& from, const Similarity& to,
                                  double share) noexcept TACTUS_NONBLOCKING;
 
@@ -21,15 +21,16 @@ namespace tactus
                                      const Vec3& center_m,
                                      double radius_m) noexcept TACTUS_NONBLOCKING;
 
-/// Speed limit of objects that a tool may touch: their motion changes a force no faster than
-/// stiffness x speed.
+/// Speed limit of objects that a tool may touch, so that their motion changes a force by at most
+/// stiffness x speed per second.
 struct ObjectSpeedLimit
 {
-    /// An object that lags by more than the limit allows in this time is rate-limited: forces of
-    /// tools that it may touch must fade. Objects that may touch within this time are limited, too.
+    /// Time, in seconds. A limited object that lags by more than its way in this time counts as
+    /// rate-limited, and forces of tools that it may touch fade. Objects are limited if they may
+    /// touch a tool within this time.
     static constexpr double kPatience_s = 0.02;
 
-    double speed_max_m_per_s{kInfinity}; ///< Above 0.
+    double speed_max_m_per_s{kInfinity}; ///< Largest speed of an object; above 0.
 
     [[nodiscard]] double most_m(double since_s) const noexcept
     {
@@ -40,8 +41,7 @@ struct ObjectSpeedLimit
     {
         return kPatience_s * (tool_speed_m_per_s + speed_max_m_per_s);
     }
-    /// True if points in reach would exceed the limit with a displacement of `way_m` within
-    /// `since_s`.
+    /// True if a displacement of `way_m` within `since_s` exceeds the speed limit.
     [[nodiscard]] bool is_too_fast(double way_m, double since_s) const noexcept
     {
         return way_m > most_m(since_s);
@@ -50,17 +50,17 @@ struct ObjectSpeedLimit
     {
         return way_m > most_m(since_s + kPatience_s);
     }
-    /// Limited pose: as far from `from` towards `to` as the object's points in reach may move
-    /// within `since_s`; `way_to_m(place)` is their displacement to a pose. A rotation's
-    /// displacement is not proportional to the share of the motion, so it is checked after each
-    /// step.
+    /// Returns the limited pose: from `from` towards `to` as far as the object's points in reach
+    /// may move within `since_s`. `way_to_m(place)` is the largest displacement of these points to
+    /// a pose. A rotation's displacement is not proportional to its share, so each step is checked.
     template <typename WayTo>
     [[nodiscard]] Similarity held(const Similarity& from, const Similarity& to, double since_s,
                                   const WayTo& way_to_m) const noexcept
     {
         constexpr int kRounds = 16;
         constexpr double kRounded = 1.0 + 1e-9;
-        constexpr double kLess = 0.95; // Ends the loop for motions that are not proportional.
+        // The factor ends the loop for motions that are not proportional to their share.
+        constexpr double kLess = 0.95;
         Similarity place = to;
         double share = 1.0;
         for (int round = 0; round < kRounds; ++round)

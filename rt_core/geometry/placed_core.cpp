@@ -17,7 +17,7 @@ namespace tactus
 namespace
 {
 
-/// An orthonormal frame whose first axis is along `way`; any if that is zero.
+/// Returns an orthonormal frame whose first axis is along `way`; any frame if `way` is zero.
 Mat3 frame_along(const Vec3& way) noexcept
 {
     const double length = way.norm();
@@ -41,13 +41,13 @@ Mat3 frame_along(const Vec3& way) noexcept
     return axes;
 }
 
-/// Vector from a box to a point, each coordinate rounded once.
+/// Vector from a box with half extents `half` to a point, each coordinate rounded once.
 Vec3 gap_from(const Vec3& half, const Vec3& point) noexcept
 {
     return {excess(point.x(), half.x()), excess(point.y(), half.y()), excess(point.z(), half.z())};
 }
 
-/// A function object, since a function would be called through a pointer.
+/// Function object instead of a function, which would be called through a pointer.
 constexpr auto squared_length = [](const Vec3& v) noexcept { return v.squaredNorm(); };
 
 CornersAtCore::Row beyond_sq(const std::array<CornersAtCore::Row, 3>& place,
@@ -68,7 +68,7 @@ CornersAtCore::Row beyond_sq(const std::array<CornersAtCore::Row, 3>& place,
     return sum;
 }
 
-/// Rounding of products with a rotation, relative to the largest coordinate.
+/// Bound on the rounding of products with a rotation, relative to the largest coordinate.
 constexpr double kRotationRounding = 4e-15;
 
 } // namespace
@@ -116,7 +116,7 @@ PlacedCore::PlacedCore(const ToolCore& core, const Similarity& place) noexcept
     }
 }
 
-/// Sets the box in the body's own axes, round its centre.
+/// Sets the bounding box of a convex body, in the body's own axes and round its centre.
 void PlacedCore::surround(const ConvexBody& body, const Similarity& place) noexcept
 {
     center_ = place.local_to_world(body.center);
@@ -152,7 +152,7 @@ Vec3 PlacedCore::placed_support(const void* core, const Vec3& direction) noexcep
     return placed.scale_ * (placed.axes_ * farthest);
 }
 
-/// Rows of numbers, which the compiler vectorises.
+/// Computes whole rows, which the compiler vectorises.
 CornersAtCore::Row heights_along(const Vec3& axis, const std::array<CornerRow, 3>& corners,
                                  const Vec3& center) noexcept
 {
@@ -218,7 +218,7 @@ ClosestPoints PlacedCore::closest_to_box(const Triangle& triangle) const noexcep
     result.on_shape = center_ + axes_ * result.on_shape;
     result.on_triangle = center_ + axes_ * result.on_triangle;
     result.gap = axes_ * result.gap;
-    // The decision is for the rotated triangle, so it is only as good as that.
+    // The result holds for the rotated triangle, so that triangle's rounding is added.
     result.distance_error += rounding_of(near);
     return result;
 }
@@ -264,9 +264,9 @@ CoreBounds PlacedCore::bounds(const CornersAtCore& seen,
                   {seen.beyond_sq[a], seen.beyond_sq[b], seen.beyond_sq[c]}, limit);
 }
 
-/// Separates along each axis of the box, and along the vector from it to the nearest corner: the
-/// box is on one side of a plane across that, and the triangle at least as far away as its corner
-/// that is least far along.
+/// Bounds the distance by separating planes: across each axis of the box, and across the vector
+/// from the box to the nearest corner. The box is on one side of such a plane, and the triangle at
+/// least as far as its nearest corner along it.
 CoreBounds PlacedCore::bounds(const Triangle& near, const std::array<double, 3>& beyond_sq,
                               double limit) const noexcept
 {
@@ -298,7 +298,7 @@ CoreBounds PlacedCore::bounds(const Triangle& near, const std::array<double, 3>&
     return found;
 }
 
-/// Separation of triangle and box along `way`, times its length.
+/// Separation of triangle and box along `way`, times the length of `way`.
 double PlacedCore::apart_along(const Vec3& way, const Triangle& near) const noexcept
 {
     return std::min({way.dot(near[0]), way.dot(near[1]), way.dot(near[2])}) -
@@ -378,7 +378,8 @@ CoreCorners PlacedCore::corners() const noexcept
 
 double PlacedCore::motion_since(const PlacedCore& before) const noexcept
 {
-    // A point is the centre and a constant share of each half axis.
+    // A point of the box is the centre plus a constant share of each half axis, so the motions of
+    // these add up.
     double motion = (center_ - before.center_).norm();
     for (int axis = 0; axis < 3; ++axis)
     {

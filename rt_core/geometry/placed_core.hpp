@@ -18,7 +18,7 @@
 namespace tactus
 {
 
-/// Spheres that together hold a core. Their order and number don't change when it moves.
+/// Spheres that together hold a core. Their order and number don't change when the core moves.
 using CoreCover = StaticVector<Sphere, kMaxCoverSpheres>;
 
 /// Corners of a core that is a segment, a box or a hull; other cores have none.
@@ -28,33 +28,34 @@ using CoreCorners = StaticVector<Vec3, kMaxHullVertices>;
 struct CoreBounds
 {
     double lower{0.0};       ///< Lower bound; may be negative.
-    double upper{kInfinity}; ///< Distance to a corner of the triangle.
-    bool meet{false};        ///< Proven to meet; PlacedCore::closest() then agrees.
+    double upper{kInfinity}; ///< Upper bound: the distance of a corner of the triangle.
+    /// True if core and triangle are proven to meet; PlacedCore::closest() then agrees.
+    bool meet{false};
 };
 
 /// Direction that separates a core and a triangle.
 struct CoreSeparation
 {
     Vec3 normal{0.0, 0.0, 0.0}; ///< Unit length, from the triangle to the core.
-    double distance{0.0};       ///< Lower bound of the distance along it; may be negative.
+    double distance{0.0};       ///< Lower bound on the distance along `normal`; may be negative.
 };
 
-/// One coordinate of corners shared by triangles.
+/// One coordinate of each corner in a list that several triangles share.
 using CornerRow = std::array<float, 16>;
 
-/// Corners of triangles in the frame of the oriented box of a core. 512 B.
+/// Corners that several triangles share, in the frame of the oriented box of a core. 512 B.
 struct CornersAtCore
 {
     static constexpr std::size_t kCorners = std::tuple_size_v<CornerRow>;
     using Row = std::array<double, kCorners>;
 
     std::array<Row, 3> place;
-    Row beyond_sq; ///< Squared distances from that box.
+    Row beyond_sq; ///< Squared distances of the corners from that box.
 };
 
-/// A tool's core in a model's frame, in which distances are measured. Results take its placed
-/// coordinates, which are rounded once, as exact. A mesh is represented only by its oriented box.
-/// 0.2 KiB.
+/// Core of a tool, placed in a model's frame, in which distances are measured. Placed coordinates
+/// are rounded once and then count as exact. A mesh is represented only by its oriented box. 0.2
+/// KiB.
 class PlacedCore
 {
 public:
@@ -74,46 +75,48 @@ public:
     {
         return std::holds_alternative<Hull>(core_) || std::holds_alternative<ConvexBody>(core_);
     }
-    /// The placed core as a convex body, for cores that are one. Points at this object, which must
-    /// not move meanwhile.
+    /// The placed core as a convex body; only for cores that are one. The result refers to this
+    /// object, which must not move meanwhile.
     [[nodiscard]] ConvexBody body() const noexcept TACTUS_NONBLOCKING;
 
-    /// Centre and radius of a sphere that holds the core; for a point, the point.
+    /// Centre and radius of the core's bounding sphere; for a point the point and 0.
     [[nodiscard]] const Vec3& center() const noexcept { return center_; }
     [[nodiscard]] double radius() const noexcept { return radius_; }
 
-    /// Oriented box of the core, with the same centre: unit axes as columns, half extents.
+    /// Oriented bounding box of the core, round center(): axes() has the unit axes as columns,
+    /// half() the half extents.
     [[nodiscard]] const Mat3& axes() const noexcept { return axes_; }
     [[nodiscard]] const Vec3& half() const noexcept { return half_; }
 
-    /// Distance and nearest points of core and triangle; the same bits regardless of other calls.
-    /// For a convex body `meet` is true only if proven. Not for a mesh (query_meshes). 50 ns for a
+    /// Distance and nearest points of core and triangle; the same arguments give the same bits.
+    /// `meet` of a convex body is true only if proven. Not for a mesh (query_meshes()). 50 ns for a
     /// point to about 2 us for a box or convex body.
     [[nodiscard]] ClosestPoints closest(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
 
-    /// Bounds from the oriented box of the core; a segment and a box equal theirs, so bounds are
-    /// tight to rounding if a corner of the triangle is nearest. A convex body has no upper bound.
-    /// About 40 ns.
+    /// Bounds on the distance from the core's oriented box. A segment and a box equal their boxes,
+    /// so their bounds are tight to rounding if a corner of the triangle is nearest. A convex body
+    /// has no upper bound. About 40 ns.
     [[nodiscard]] CoreBounds bounds(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
-    /// The same for triangles that share corners, about 20 ns each plus 100 for the corners. Lower
-    /// bounds above `limit` need not be tight.
+    /// see() and this bounds() do the same for triangles that share corners, in about 20 ns each
+    /// plus 100 for the corners. Lower bounds above `limit` need not be tight.
     void see(const std::array<CornerRow, 3>& corners,
              CornersAtCore& seen) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] CoreBounds bounds(const CornersAtCore& seen,
                                     const std::array<std::uint8_t, 3>& triangle,
                                     double limit) const noexcept TACTUS_NONBLOCKING;
 
-    /// Separation along the vector from the core's oriented box to the nearest corner; its normal
-    /// is zero if that corner is in the box. About 30 ns.
+    /// Separation of core and triangle along the vector from the core's oriented box to the nearest
+    /// corner; the normal is zero if that corner is in the box. About 30 ns.
     [[nodiscard]] CoreSeparation
     separation(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
 
-    /// Enough spheres for none to be larger than `enough`, but at most kMaxCoverSpheres.
+    /// Spheres that hold the core: enough that none has a radius above `enough`, but at most
+    /// kMaxCoverSpheres.
     [[nodiscard]] CoreCover cover(double enough) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] CoreCorners corners() const noexcept TACTUS_NONBLOCKING;
 
-    /// Largest displacement of the core's points since `before`, which is the same core placed
+    /// Bound on the displacement of the core's points since `before`, the same core placed
     /// elsewhere.
     [[nodiscard]] double motion_since(const PlacedCore& before) const noexcept TACTUS_NONBLOCKING;
 
@@ -123,21 +126,21 @@ private:
     static Vec3 placed_support(const void* core, const Vec3& direction) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] ClosestPoints
     closest_to_box(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
-    /// Triangle in the frame of the oriented box; below, a bound on the rounding.
+    /// Converts a triangle to the frame of the oriented box; rounding_of() bounds the rounding.
     [[nodiscard]] Triangle to_box_frame(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] double
     rounding_of(const Triangle& in_box_frame) const noexcept TACTUS_NONBLOCKING;
-    /// Bounds for a triangle in that frame with these squared distances of its corners from the
-    /// box.
+    /// Bounds for a triangle in the box's frame; `beyond_sq` are its corners' squared distances
+    /// from the box.
     [[nodiscard]] CoreBounds bounds(const Triangle& near, const std::array<double, 3>& beyond_sq,
                                     double limit) const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] double apart_along(const Vec3& way,
                                      const Triangle& near) const noexcept TACTUS_NONBLOCKING;
 
-    /// A segment is placed; a box has its placed half extents, as has the box of a mesh; convex
-    /// bodies are as given. Five alternatives are the most that are copied without a call through a
-    /// pointer.
+    /// Core of the tool: a segment is placed, a box (also that of a mesh) has placed half extents,
+    /// and convex bodies are as given. More than five alternatives would be copied by a call
+    /// through a pointer.
     std::variant<PointCore, Segment, Box, Hull, ConvexBody> core_;
     bool is_mesh_{false};
     Vec3 center_{0.0, 0.0, 0.0};
@@ -147,12 +150,12 @@ private:
     double scale_{1.0};
 };
 
-/// Heights of corners along an axis of length 1, from a centre.
+/// Heights of the corners along an axis of length 1, relative to a centre.
 [[nodiscard]] CornersAtCore::Row heights_along(const Vec3& axis,
                                                const std::array<CornerRow, 3>& corners,
                                                const Vec3& center) noexcept TACTUS_NONBLOCKING;
 
-/// The middle of both bounds, with half of their difference as the error.
+/// Converts the bounds: the distance is their middle, the error half of their difference.
 [[nodiscard]] ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

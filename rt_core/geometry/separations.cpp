@@ -15,7 +15,7 @@ namespace tactus
 namespace
 {
 
-/// Least of the places in `used`.
+/// Smallest value of the row at the places in `used`, one bit each.
 double least(const CornersAtCore::Row& row, std::uint32_t used) noexcept
 {
     double found = kInfinity;

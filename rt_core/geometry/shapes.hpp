@@ -5,12 +5,12 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/vec3.hpp"
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
 // Closed shapes for tests against triangles, in the triangle's frame and unit of length. Each may
-// be degenerate: a segment a point, a box a rectangle, a radius zero.
+// be degenerate: a segment may be a point, a box a rectangle, and a radius zero.
 
 struct Segment
 {
@@ -18,8 +18,8 @@ struct Segment
     Vec3 to{0.0, 0.0, 0.0};
 };
 
-/// Point at `parameter`, 0 .. 1 (asserted). Rounded from the nearer end, so that the ends keep
-/// their bits.
+/// Point of a segment at `parameter`, 0 .. 1 (asserted). It is computed from the nearer end, so
+/// that parameters 0 and 1 give the ends exactly.
 [[nodiscard]] inline Vec3 point_at(const Segment& segment, double parameter) noexcept
 {
     TACTUS_ASSERT(parameter >= 0.0);

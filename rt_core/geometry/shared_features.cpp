@@ -17,14 +17,14 @@ namespace tactus
 namespace
 {
 
-/// Distance, in local lengths, below which the vector between two points has too few correct bits
-/// to tell sides by.
+/// Distance of the nearest points, in local lengths, below which the vector between them has too
+/// few correct bits for a test of sides.
 constexpr double kLeastApart = 1e-6;
 
-/// Squared sine of an angle below which edges have many points that are nearly the nearest.
+/// Squared sine of the angle between two edges below which many points are nearly the nearest.
 constexpr double kLeastSineSq = 1e-6;
 
-/// Corners of a triangle, one bit each, of each feature.
+/// Corners of each feature of a triangle, one bit each.
 constexpr std::array<std::uint32_t, 7> kCornersOf{1, 2, 4, 3, 6, 5, 7};
 
 TriangleFeature feature_of(std::uint32_t corners) noexcept
@@ -42,7 +42,8 @@ bool is_same(const Vec3& a, const Vec3& b) noexcept
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/// Bits of these corners in the triangle; 0 unless each of them is exactly one of it.
+/// Finds which corners of the triangle these are, as bits; 0 unless each equals exactly one of the
+/// triangle's.
 std::uint32_t find_corners(const Triangle& triangle, std::span<const Vec3> corners) noexcept
 {
     std::uint32_t found = 0;
@@ -62,7 +63,8 @@ std::uint32_t find_corners(const Triangle& triangle, std::span<const Vec3> corne
     return found;
 }
 
-/// True if the triangle's other corners are farther along `way` than these.
+/// True if the triangle's other corners are farther along `way` than those in `corners`, by more
+/// than `margin`.
 bool are_others_beyond(const Triangle& triangle, std::uint32_t corners, const Vec3& way,
                        double margin) noexcept
 {
@@ -131,8 +133,9 @@ ClosestPoints SharedFeatures::closest_points(const Triangle& first, const Triang
     return closest;
 }
 
-/// The connection of the features is perpendicular to both, so all of a feature is on its plane;
-/// `margin` covers its rounding.
+/// Finds a known pair of features that both triangles have. The connection of the features is
+/// perpendicular to both, so each lies in one plane across it; `margin` covers the plane's
+/// rounding.
 std::optional<ClosestPoints> SharedFeatures::find(const Triangle& first,
                                                   const Triangle& second) const noexcept
 {

@@ -16,43 +16,46 @@
 namespace tactus
 {
 
-/// Half a unit in the last place.
+/// Rounding of one operation in `Real`: half a unit in the last place.
 template <typename Real>
 inline constexpr double kRounding = std::same_as<Real, double> ? 0x1p-53 : 0x1p-102;
 
-/// Distance that double can't tell from zero, in lengths of the operands of a simplex's points: a
-/// tetrahedron holds the origin if its weights bring it this near.
+/// Distance from the origin that double can't tell from zero, in lengths of the operands of the
+/// simplex's points. A tetrahedron counts as holding the origin if the weighted sum of its points
+/// is this near.
 inline constexpr double kSimplexTouching = 8.0 * kRounding<double>;
 
-/// The point of a simplex nearest to the origin.
+/// Foot: the point of a simplex nearest to the origin.
 template <typename Real>
 struct SimplexFoot
 {
-    /// Weights of the simplex's points; none negative, zero for points that aren't corners of the
-    /// feature that holds the foot. Their sum is 1.
+    /// Weights of the simplex's points, with a sum of 1. None is negative; zero for points that
+    /// aren't corners of the feature that holds the foot.
     std::array<Real, 4> weights{};
-    /// The foot as the weighted sum of the points, so in the simplex for any weights.
+    /// Weighted sum of the points, so in the simplex for any weights.
     Triple<Real> foot{};
     Real distance_sq{0.0};
-    /// Normal of the feature from the origin, of any length: correct even if the foot is so near
-    /// that little of its own direction is left.
+    /// Normal of the feature that holds the foot, away from the origin, of any length. It is
+    /// correct even if the foot is so near to the origin that its own direction is lost to
+    /// rounding.
     Triple<Real> across{};
     std::size_t corners{0};
 };
 
-/// Finds the foot of one to four points: the nearest of all features' feet, largest features first.
-/// Tetrahedra have one only if the origin is inside.
+/// Finds the foot of a simplex of one to four points: the nearest one of the feet of all its
+/// features, with the largest features first. A tetrahedron's inside has a foot only if it holds
+/// the origin.
 ///
-/// A face or edge counts if all its weights are positive. These are ratios of areas and lengths and
-/// identify the feature much better than the distances, whose squares differ little beside an edge.
-/// So a smaller feature is taken only if it is nearer by more than rounding.
+/// A face or edge has a foot if all its weights are positive. Weights are ratios of areas and
+/// lengths and identify the feature better than the distances, whose squares differ little beside
+/// an edge. So a smaller feature is taken only if it is nearer by more than rounding.
 template <typename Real>
 class SimplexSolver
 {
 public:
     using Point = Triple<Real>;
 
-    /// `length` of the operands from which the points were made, which sets their rounding.
+    /// `length` is that of the operands from which the points were made, and sets their rounding.
     SimplexSolver(std::span<const Point> points, double length) noexcept
         : points_(points)
         , noise_(8.0 * kRounding<Real> * length)
@@ -60,7 +63,8 @@ public:
     {
     }
 
-    /// Foot among the features with the last point as a corner, or among all.
+    /// Returns the foot of the simplex; `with_last_only` leaves out features without the last
+    /// point.
     [[nodiscard]] SimplexFoot<Real> find(bool with_last_only) noexcept
     {
         const std::size_t count = points_.size();
@@ -158,8 +162,9 @@ private:
         keep_if_nearer(weights, foot, height < Real{0.0} ? -normal : normal, 3);
     }
 
-    /// Adds a foot if the origin is inside: the volumes opposite the corners have one sign. The
-    /// volumes of flat tetrahedra are noise; their weighted sum of points then is not zero.
+    /// Tries the inside of a tetrahedron: it holds the origin if the volumes opposite the corners
+    /// have one sign. The volumes of flat tetrahedra are noise; the weighted sum of their points
+    /// then is not zero.
     void try_inside() noexcept
     {
         const Point front = cross(points_[0], points_[1]);
@@ -201,7 +206,7 @@ private:
     }
 
     std::span<const Point> points_;
-    double noise_;    ///< Bound on the rounding of zero.
+    double noise_;    ///< Bound on the rounding of a coordinate that is zero.
     double touching_; ///< Distances up to this count as zero.
     double tie_{0.0};
     SimplexFoot<Real> best_{};

@@ -9,31 +9,30 @@
 
 #include <variant>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// The origin of the tool's frame.
+/// Point core, at the origin of the tool's frame.
 struct PointCore
 {
 };
 
-/// A tool that is a mesh: all faces of its own model, in the frame of the mesh file that the model
-/// was built from. Only `model` is set by the caller; the frame takes the rest from the model's
-/// header.
+/// Mesh core: all faces of the tool's own model, in the frame of the mesh file that the model was
+/// built from. The caller only sets `model`; the frame takes the rest from the model's header.
 struct MeshCore
 {
     ModelId model{};
-    /// Origin of the model's frame in the tool's; the axes are parallel.
+    /// Origin of the model's frame in the tool's frame; the axes are parallel.
     Vec3 origin_m{0.0, 0.0, 0.0};
-    /// Size of the model, which lies between its origin and this.
+    /// Extent of the model: in its own frame it lies between the origin and this point.
     Vec3 extent_m{0.0, 0.0, 0.0};
 };
 
-/// Core of a tool, which consists of all points within its radius of the core: a sphere is a point
-/// with a radius, a capsule a segment with one, a box may have rounded edges. The tool's own frame,
-/// metres; finite, which is not checked. Data that a hull or convex body refers to outlives the
-/// tool.
+/// Core of a tool, which consists of all points within its radius of the core. So a sphere is a
+/// point with a radius, a capsule a segment, and a box may have rounded edges. The frame is the
+/// tool's, the unit metres. Values must be finite, which is not checked. Data that a hull or convex
+/// body refers to must outlive the tool.
 using ToolCore = std::variant<PointCore, Segment, Box, Hull, ConvexBody, MeshCore>;
 
 } // namespace tactus

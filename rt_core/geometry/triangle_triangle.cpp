@@ -11,7 +11,7 @@ namespace tactus
 namespace
 {
 
-/// A shared point of triangles that meet.
+/// Returns a shared point of two triangles that meet.
 ClosestPoints find_shared_point(const Triangle& first, const Triangle& second) noexcept
 {
     if (const auto found = find_edge_piercing(first, second))

@@ -7,13 +7,13 @@
 namespace tactus
 {
 
-/// Nearest points of two triangles, the first being the shape; where they meet, a shared point. Law
-/// and range are those of a segment and a triangle. About 1.4 us apart; 3 to 7 us if they touch or
-/// lie in one plane.
+/// Nearest points of two triangles, of which `first` is the shape; if they meet, a shared point.
+/// Error law and range are those of a segment and a triangle. About 1.4 us for separate ones; 3 to
+/// 7 us if they touch or lie in one plane.
 [[nodiscard]] ClosestPoints closest_points(const Triangle& first,
                                            const Triangle& second) noexcept TACTUS_NONBLOCKING;
 
-/// The same, to the bit, with the result of meet() given.
+/// closest_points() with the result of meet() given; the same to the bit.
 [[nodiscard]] ClosestPoints closest_points(const Triangle& first, const Triangle& second,
                                            bool do_meet) noexcept TACTUS_NONBLOCKING;
 

@@ -7,8 +7,8 @@
 namespace tactus
 {
 
-/// Exports to kernels.cpp from the sources that are compiled once for each instruction set. Data
-/// alone: even a function that returns them would be compiled for that set.
+/// Kernel sets for kernels.cpp, from the sources that are compiled once for each instruction set.
+/// Only data: even a function that returns them would be compiled for that set.
 extern const Kernels kPortableKernels;
 extern const Kernels kAvx2Kernels; ///< Only with TACTUS_HAS_X86_KERNELS.
 

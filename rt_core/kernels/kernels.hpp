@@ -15,8 +15,8 @@
 namespace tactus
 {
 
-/// The point of a query in the kernels' form: in single precision, split so that a coordinate's
-/// difference from it is right to a few units in the last place.
+/// A query point in single precision, split so that a coordinate's difference from it is right to a
+/// few units in the last place.
 struct KernelProbe
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
@@ -40,15 +40,15 @@ struct FaceBounds
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// A rotated box of another frame in the kernels' form; around its centre, in units shared by both
-/// frames.
+/// A rotated box, such as a mesh tool's, for comparison with boxes of a tree's frame. Lengths are
+/// around its centre, in units shared by both frames.
 struct KernelBox
 {
     KernelProbe center; ///< Centre; `scale` is units per metre, `slack` includes the box's
                         ///< rounding.
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
-    float half[3];       ///< Half its extent along the axes of this frame.
-    float half_along[3]; ///< Half its extent along its own axes.
+    float half[3];       ///< Half extents along the axes of the tree's frame.
+    float half_along[3]; ///< Half extents along its own axes.
     float axes[3][3];    ///< Its own axes, of unit length to rounding.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
@@ -86,12 +86,13 @@ struct PairRows
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     alignas(64) float at[6][3][kPairLanes];
-    float off[kPairLanes]; ///< Error bound of any coordinate; kLeastPairOff or more.
+    float off[kPairLanes]; ///< Error bound of each coordinate; kLeastPairOff or more.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 inline constexpr float kLeastPairOff = 0x1p-40F;
 
-/// Proven results of single precision, one bit per pair; a pair may have neither.
+/// Pairs proven to meet, and proven not to, in single precision; one bit each. A pair may have
+/// neither bit.
 struct PairSides
 {
     std::uint32_t meet;
@@ -108,13 +109,13 @@ struct PairDistances
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
-/// Found but unvisited nodes, and blocks with coarse faces, of a breadth-first traversal. They are
-/// visited one by one. The kernels write whole vectors, so there are eight places more than are
-/// used. 3.4 KB on the stack.
+/// Nodes, and blocks with coarse faces, that a breadth-first traversal found and still has to
+/// visit. The kernels write whole vectors, so there are eight places more than are used. 3.4 KB on
+/// the stack.
 struct Frontier
 {
-    /// Number of items visited in order. Beyond this the last comes first, which bounds the waiting
-    /// items: no level then has more than a depth-first stack's.
+    /// Number of waiting items up to which the first found is visited first. Beyond it the last
+    /// found comes first, so each level adds no more items than to a depth-first stack.
     static constexpr std::uint32_t kBroad = 256;
     static constexpr std::uint32_t kRoom = kBroad + kTreeStack + 8;
 
@@ -137,17 +138,17 @@ struct BlockBatch
     float gaps[kRoom];           ///< Lower bounds on the distances of their boxes, in quanta.
     float toward[3][kRoom];      ///< Vectors from the probe towards their boxes' middles, of any
                                  ///< length.
-    std::uint16_t near[kRoom];   ///< Faces that may matter, written by test_blocks().
+    std::uint16_t near[kRoom];   ///< Faces that test_blocks() finds near.
     /// Lower bounds on all faces' squared distances; may be negative.
     alignas(64) float lower_sq[kRoom][16];
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
 };
 
 /// Eight faces, one lane each, with a plane before each of them. The distance of a face from any
-/// place is at least the place's height, normal . place + offset. A face without a computed plane
-/// has its distance from the centre as offset, and `cone` is 1: the height is that less the place's
-/// distance from the centre. A lane without a face has the largest height. In quanta, around a
-/// centre. 160 B.
+/// place is at least the place's height above its plane, normal . place + offset. A face without a
+/// computed plane has cone 1 and its distance from the centre as offset; its height is the offset
+/// minus the place's distance from the centre. A lane without a face has the largest height. In
+/// quanta, around a centre. 160 B.
 inline constexpr std::uint32_t kPlaneLanes = 8;
 struct PlaneRows
 {
@@ -161,7 +162,7 @@ static_assert(sizeof(PlaneRows) == 160);
 /// Upper limit of a plane's offset.
 inline constexpr float kFarPlane = 0x1p100F;
 
-/// Lanes whose planes were computed, and the number of their stand.
+/// Lanes of a batch whose planes were computed from the stand with this number (PlaneQuestion).
 struct PlaneSeen
 {
     std::uint32_t stand;
@@ -175,21 +176,22 @@ struct PlaneTable
     std::uint32_t count;
     PlaneRows* planes;
     PlaneSeen* seen;
-    /// Least height of each batch at the last question's place, or less. Padded to whole eights
-    /// with kFarPlane.
+    /// Lower bound on the heights of each batch at the last question's place. Padded with kFarPlane
+    /// to a multiple of eight.
     float* lows;
     /// First face of each batch, as LocalTriangle lies in memory.
     const void* const* triangles;
 };
 
-/// Places are in quanta around the table's centre, rounded to float from double.
+/// Places of the sphere's centre are in quanta around the table's centre, rounded to float from
+/// double.
 struct PlaneQuestion
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
     float place[3];
-    float stand[3]; ///< Present position of the sphere.
+    float stand[3]; ///< Place of the sphere's centre from which planes are computed.
     // NOLINTEND(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays)
-    std::uint32_t stand_number; ///< Number of the stand: another one for each, not 0.
+    std::uint32_t stand_number; ///< Number of the stand, above 0; each new stand has another.
     float drift;                ///< Upper bound on the distance between the places of the last
                                 ///< question and this one.
     float least;                ///< Height below which faces are reported.
@@ -205,17 +207,17 @@ struct PlaneCounts
     std::uint32_t looked; ///< Batches with newly computed planes.
 };
 
-/// Faces of a batch that are below.
+/// Faces of one batch that are below the heights that the question sets.
 struct PlaneHit
 {
     // NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): likewise.
     float heights[kPlaneLanes]; ///< Heights of all lanes.
     float low;                  ///< Least of the heights.
     std::uint32_t batch;
-    std::uint32_t lanes; ///< Lanes that are below.
+    std::uint32_t lanes; ///< Lanes of these faces, one bit each.
 };
 
-/// An index page in the form of its boxes' kernel: around a point, in quanta.
+/// Box of an index page for near_boxes(), relative to a point, in quanta.
 struct KernelPage
 {
     // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): kernel_source.inc.
@@ -227,7 +229,7 @@ struct KernelPage
 /// Number of boxes in a row of an index page: three rows of low steps, then three of high ones.
 inline constexpr int kIndexRow = 64;
 
-/// A sphere around the same point, in quanta.
+/// A sphere for near_boxes(), relative to the same point, in quanta.
 struct KernelSphere
 {
     // NOLINTNEXTLINE(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): likewise.
@@ -257,23 +259,24 @@ inline constexpr std::size_t kBlockVerticesAt = 242;
 static_assert(sizeof(FaceBounds) == 128);
 static_assert(sizeof(TriangleRows) == 1024);
 
-/// The inner loops of query and refit, in one set for each instruction set. A program chooses a set
-/// (FrameSetup::kernels) and calls none of them.
+/// The inner loops of query and refit, one set for each instruction set. A program only chooses the
+/// set (FrameSetup::kernels).
 ///
 /// `boxes` are six rows of eight floats, low x, y, z, high x, y, z; `coordinates` three rows of 16
 /// floats; both in metres. `corners` are three rows of 16 row numbers, `gaps` eight floats in
 /// quanta. Bit n of a mask is child, face, vertex or lane n. Nothing is checked.
 ///
-/// They filter and do not decide: bounds are conservative by a stated margin, and cases within it
-/// are decided in double precision elsewhere. Every set does the same IEEE operations in the same
-/// order on each lane, without FMA or estimated reciprocals. So all give the same bits (except for
-/// the sign of a box bound that is zero).
+/// Kernels filter and do not decide: bounds are conservative by a stated margin, and cases within
+/// it are decided in double precision elsewhere. Every set does the same IEEE operations in the
+/// same order on each lane, without FMA or estimated reciprocals. So all give the same bits (except
+/// for the sign of a box bound that is zero).
 struct Kernels
 {
     const char* name; ///< Name in reports; static.
 
-    /// Lower bounds on the distances to the boxes of a node's eight children: `boxes` is AbNode's
-    /// six rows. Returns the children in `mask` whose bound is not above `bound`.
+    /// Writes to `gaps` lower bounds on the probe's distances from the boxes of a node's eight
+    /// children; `boxes` are AbNode's six rows. Returns the children in `mask` whose bound is not
+    /// above `bound`.
     std::uint32_t (*child_gaps)(const float* boxes, const KernelProbe& probe, std::uint32_t mask,
                                 float bound, float* gaps) noexcept TACTUS_NONBLOCKING;
 
@@ -290,9 +293,9 @@ struct Kernels
                                  float floor, float& limit,
                                  FaceBounds& bounds) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the children in `mask` whose bound, child_gaps()'s, is not above `bound`: the blocks
-    /// that are not in `coarse` to the batch, all others to the frontier, each in their order.
-    /// `children` are eight TreeRefs. Both must have eight free places.
+    /// Adds the children in `mask` whose bound from child_gaps() is not above `bound`: blocks that
+    /// are not in `coarse` to the batch, others to the frontier, each in their order. `children`
+    /// are eight TreeRefs. Batch and frontier must have eight free places each.
     void (*enter_node)(const float* boxes, const std::uint32_t* children, const KernelProbe& probe,
                        std::uint32_t mask, std::uint32_t coarse, float bound, Frontier& frontier,
                        BlockBatch& batch) noexcept TACTUS_NONBLOCKING;
@@ -327,21 +330,22 @@ struct Kernels
     void (*node_box)(const float* boxes, std::uint32_t mask,
                      float* box) noexcept TACTUS_NONBLOCKING;
 
-    /// Lower bounds on the distances from a box to the boxes of a node's eight children: the larger
-    /// of the gaps along the axes of the one and of the other. Returns the children in `mask` whose
-    /// bound is not above `bound`.
+    /// Writes to `gaps` lower bounds on the distances from a box to the boxes of a node's eight
+    /// children: the larger of the gaps along both frames' axes. Returns the children in `mask`
+    /// whose bound is not above `bound`.
     std::uint32_t (*box_gaps)(const float* boxes, const KernelBox& box, std::uint32_t mask,
                               float bound, float* gaps) noexcept TACTUS_NONBLOCKING;
 
-    /// Raises the lower bounds `gaps` to the boxes' gaps along one more direction. `way` is not
-    /// longer than 1 and points from the node to the box. Otherwise as box_gaps().
+    /// Raises the bounds `gaps` of box_gaps() to the boxes' gaps along the direction `way`, not
+    /// longer than 1, from the node to the box. Otherwise as box_gaps().
     std::uint32_t (*boxes_along)(const float* boxes, const KernelBox& box, const float* way,
                                  std::uint32_t mask, float bound,
                                  float* gaps) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces of a block, translated and rotated: `coordinates` less `from`, times the 3 x 3 of
-    /// `turn`, row by row. A coordinate is off by less than 2^-21 of the sum of the differences'
-    /// sizes, times the largest of `turn`. `coordinates` and `corners` are BlockGeometry's rows.
+    /// Writes to `rows` the faces of a block, translated and rotated: `coordinates` less `from`,
+    /// times the 3 x 3 of `turn`, row by row. A coordinate is off by less than 2^-21 of the sum of
+    /// the differences' sizes, times the largest of `turn`. `coordinates` and `corners` are
+    /// BlockGeometry's rows.
     void (*place_turned)(const float* coordinates, const std::uint8_t* corners, const float* from,
                          const float* turn, TriangleRows& rows) noexcept TACTUS_NONBLOCKING;
 
@@ -351,34 +355,33 @@ struct Kernels
     float (*highest_along)(const float* coordinates, std::uint32_t mask, const KernelProbe& probe,
                            const float* way) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces in `mask` that are not proven to be farther than `bound` and their error from a
-    /// box, along the frame's axes and their normals. `box` is low x, y, z, high x, y, z in metres,
-    /// and `center` is the rows' centre. `slack` is the error of their vertices beyond 2^-22 of
-    /// their size. If no face is left, all in `mask` are at least `least_gap` away, errors
-    /// subtracted.
+    /// Returns the faces in `mask` not proven to be farther from a box than `bound` plus their
+    /// error, along the frame's axes and their normals. `box` is low x, y, z, high x, y, z in
+    /// metres; `center` is the rows' centre. `slack` is the error of their vertices beyond 2^-22 of
+    /// their size. If none is left, all in `mask` are at least `least_gap` away, errors subtracted.
     std::uint32_t (*near_rows)(const TriangleRows& rows, const float* box,
                                const KernelProbe& center, std::uint32_t mask, float bound,
                                float slack, float& least_gap) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces in `mask` of a block that are not proven to be farther than `bound` from a box,
-    /// along its own axes and the frame's; and the block's vertices around the box's centre.
+    /// Returns the faces in `mask` of a block not proven to be farther than `bound` from a box,
+    /// along both frames' axes. Writes to `rows` the block's vertices around the box's centre.
     std::uint32_t (*near_block)(const float* coordinates, const std::uint8_t* corners,
                                 const KernelBox& box, std::uint32_t mask, float bound,
                                 VertexRows& rows) noexcept TACTUS_NONBLOCKING;
 
-    /// Finds, for each face in `tool_mask`, the faces in `mask` that are not proven to be farther
-    /// than `bound` and its error from it. Tested along the frame's axes, its own normal and `way`:
-    /// not longer than 1, from the object to the tool, null if unknown. Both rows are around the
-    /// same point; `slack` is as above.
+    /// Writes to near[lane], for each tool face `lane` in `tool_mask`, the faces in `mask` not
+    /// proven to be farther from it than `bound` plus its error. Tested along the frame's axes, the
+    /// tool face's normal, and `way`: from the object to the tool, not longer than 1, null if
+    /// unknown. Both rows are around the same point; `slack` is as in near_rows().
     void (*near_pairs)(const VertexRows& rows, const std::uint8_t* corners, std::uint32_t mask,
                        const TriangleRows& tool, std::uint32_t tool_mask, float bound, float slack,
                        const float* way, std::uint32_t* near) noexcept TACTUS_NONBLOCKING;
 
-    /// The faces that a sphere of radius `least` may enter on a straight motion from the stand to
-    /// the place. Planes that are below are first computed again from the stand, each once per
-    /// stand. Heights are at the place, or at the stand if that is below `least_here` and less. If
-    /// the stand was used before, a face that is not in `hits` has a plane that is not below at
-    /// either. `hits` has places for all batches and keeps the batches' order.
+    /// Writes to `hits`, in the batches' order, the faces that a sphere of radius `least` may enter
+    /// on a straight motion from the stand to the place. A plane too low at the place is first
+    /// computed again from the stand, once per stand. Heights in `hits` are at the place, or at the
+    /// stand if that is lower and below `least_here`. A face without a hit is free at the place,
+    /// and at the stand if the stand was used before. `hits` has places for all batches.
     PlaneCounts (*planes_below)(const PlaneTable& table, const PlaneQuestion& question,
                                 PlaneHit* hits) noexcept TACTUS_NONBLOCKING;
 
@@ -386,42 +389,42 @@ struct Kernels
     float (*least_height)(const PlaneTable& table,
                           const PlaneQuestion& question) noexcept TACTUS_NONBLOCKING;
 
-    /// Decides which pairs in the first `count` lanes meet.
+    /// Finds which pairs in the first `count` lanes surely meet and which surely don't.
     PairSides (*decide_pairs)(const PairRows& rows,
                               std::uint32_t count) noexcept TACTUS_NONBLOCKING;
 
-    /// Bounds on the distances of the pairs in the first `count` lanes. A pair's `way` gives its
-    /// lower bound, and can rule out others.
+    /// Writes bounds on the distances of the pairs in the first `count` lanes. A pair's lower bound
+    /// is the gap along its `way`.
     void (*pair_distances)(const PairRows& rows, std::uint32_t count,
                            PairDistances& distances) noexcept TACTUS_NONBLOCKING;
 
-    /// Relation of eight boxes of an index page to `count` spheres; boxes in `known` are left out.
-    /// `steps` is the first of them in the page's first row.
+    /// Finds which of eight boxes of an index page meet one of `count` spheres; boxes in `known`
+    /// are left out. `steps` is the place of the first box in the page's first row.
     NearBoxes (*near_boxes)(const std::uint16_t* steps, const KernelPage& page,
                             const KernelSphere* spheres, std::uint32_t count,
                             std::uint32_t known) noexcept TACTUS_NONBLOCKING;
 };
 
 /// Rounding of the bounds between boxes and between faces in single precision, as a share of the
-/// sum of their coordinates around the common point. Larger than all roundings together, which
-/// kernel_pairs.inc counts.
+/// sum of their coordinates around the common point. Exceeds all roundings together
+/// (kernel_pairs.inc).
 inline constexpr float kPairMargin = 0x1p-19F;
 
-/// Faces with a larger aspect (longest edge squared / twice the area) are bounded by their edges
-/// alone.
+/// Aspect (longest edge squared / twice the area) above which face_bounds() bounds a face by its
+/// edges alone, and the margin of its bounds.
 inline constexpr float kThinAspect = 128.0F;
 inline constexpr float kFaceMargin = 4e-5F;
 
 /// Limits for test_blocks(), whose bounds are squares (docs/accuracy.md, "The filter in squares").
 inline constexpr float kSquareThinAspect = 32.0F;
 inline constexpr float kSquareMargin = 0x1p-15F;
-/// Rounding of an inside test, as a share of the farthest corner's distance x the cube of the
-/// longest edge.
+/// Rounding of the test whether the probe lies over a face, as a share of the farthest corner's
+/// distance x the cube of the longest edge.
 inline constexpr float kInsideMargin = 0x1p-17F;
 
-/// The set that runs on every processor. All sets are static.
+/// The kernels that run on every processor. All sets are static.
 [[nodiscard]] const Kernels& portable_kernels() noexcept;
-/// The sets for this processor, the fastest last. Queries the processor: for start-up.
+/// The kernel sets that this processor runs, the fastest last. Queries the processor: for start-up.
 [[nodiscard]] std::span<const Kernels* const> available_kernels() noexcept;
 /// The fastest set; also for start-up.
 [[nodiscard]] inline const Kernels& best_kernels() noexcept

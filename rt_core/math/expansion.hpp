@@ -40,7 +40,8 @@ public:
         }
     }
 
-    /// -1, 0 or 1: the last term is larger than the sum of the others.
+    /// Sign of the value, -1, 0 or 1: that of the last term, which is larger than the sum of the
+    /// others.
     [[nodiscard]] int sign() const noexcept
     {
         return size_ == 0 ? 0 : (term_[size_ - 1] > 0.0 ? 1 : -1);

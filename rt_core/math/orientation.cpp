@@ -20,8 +20,8 @@ constexpr double kVolumeError = 9.0 * 0x1p-53;
 /// Differences are exact in double-double, and a term has been rounded at most five times, 2^-102
 /// each; relative to a value of at least this share of the terms, that is under 2^-55.
 constexpr double kLeastVolumeLeft = 0x1p-44;
-/// The bound for an area: two differences, one product, one difference, and one for products of
-/// these errors.
+/// Rounding of an area, as a share of its terms' sizes: two differences, one product, one
+/// difference, and one for products of these errors.
 constexpr double kAreaError = 5.0 * 0x1p-53;
 /// Products below this may have lost bits.
 constexpr double kLeastTrusted = 1e-280;
@@ -47,14 +47,14 @@ Expansion<192> exact_volume(const Vec3& a, const Vec3& b, const Vec3& c, const V
            exact_minor(u.x, u.y, v.x, v.y) * w.z;
 }
 
-/// The cross product with the magnitudes of all terms added.
+/// Cross product with its terms' magnitudes added instead of subtracted.
 Triple<double> cross_terms(const Triple<double>& u, const Triple<double>& v) noexcept
 {
     return {std::abs(u.y * v.z) + std::abs(u.z * v.y), std::abs(u.z * v.x) + std::abs(u.x * v.z),
             std::abs(u.x * v.y) + std::abs(u.y * v.x)};
 }
 
-/// The determinant with the magnitudes of all terms added.
+/// Determinant with its terms' magnitudes added instead of subtracted.
 double size_of_terms(const Triple<double>& terms, const Triple<double>& w) noexcept
 {
     return std::abs(w.x) * terms.x + std::abs(w.y) * terms.y + std::abs(w.z) * terms.z;

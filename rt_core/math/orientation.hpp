@@ -16,7 +16,8 @@ namespace tactus
 
 using Vec2 = std::array<double, 2>;
 
-/// The other two coordinates, in an order that keeps the sign of areas: y, z for x.
+/// Projection of a point along an axis: the other two coordinates, in the order that keeps the sign
+/// of areas (y, z along x).
 [[nodiscard]] inline Vec2 seen_along(std::size_t axis, const Vec3& point) noexcept
 {
     TACTUS_ASSERT(axis < 3);
@@ -33,8 +34,9 @@ using Vec2 = std::array<double, 2>;
 [[nodiscard]] int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c,
                                 const Vec3& d) noexcept TACTUS_NONBLOCKING;
 
-/// det[b - a, c - a, d - a] within three units in the last place, however much cancels, for the
-/// same coordinates: double-double, or exact arithmetic if less than 2^-44 of the terms is left.
+/// det[b - a, c - a, d - a] within three units in the last place, however much cancels, for
+/// coordinates as in side_of_plane(). Double-double, or exact arithmetic if less than 2^-44 of the
+/// terms is left.
 [[nodiscard]] double volume(const Vec3& a, const Vec3& b, const Vec3& c,
                             const Vec3& d) noexcept TACTUS_NONBLOCKING;
 
@@ -79,11 +81,12 @@ sides_of_edges(const Vec3& a, const Vec3& b,
                const std::array<Vec3, 3>& triangle) noexcept TACTUS_NONBLOCKING;
 
 /// Side of the line from a to b on which the point c lies: 1 on the left, -1 on the right, 0 on it,
-/// and also 0 if a = b. Exact for the same coordinates.
+/// and also 0 if a = b. Exact for coordinates as in side_of_plane().
 [[nodiscard]] int side_of_line(const Vec2& a, const Vec2& b,
                                const Vec2& c) noexcept TACTUS_NONBLOCKING;
 
-/// Sign of a coordinate of (b - a) x (c - a) of the corners. Exact for the same coordinates.
+/// Sign of one coordinate of (b - a) x (c - a) for a triangle with corners a, b, c. Exact for
+/// coordinates as in side_of_plane().
 [[nodiscard]] inline int area_sign_along(std::size_t axis,
                                          const std::array<Vec3, 3>& triangle) noexcept
 {

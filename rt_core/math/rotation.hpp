@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// Bound above all deviations that roundings cause between R^T R and the identity.
+/// Deviation of R^T R from the identity, per entry, that exceeds all those caused by rounding.
 inline constexpr double kOrthonormalRounding = 1e-9;
 
 /// True if each entry of R^T R is within the tolerance of the identity's. 30 instructions.
@@ -54,7 +54,7 @@ inline constexpr double kOrthonormalRounding = 1e-9;
     return result;
 }
 
-/// A rotation in the records of devices and hosts: x, y, z, w.
+/// A rotation in the records of devices and servers: x, y, z, w.
 using Quaternion = std::array<double, 4>;
 
 /// True if the length is within the tolerance of 1; false for NaN.
@@ -119,8 +119,8 @@ using Quaternion = std::array<double, 4>;
     return orthonormalised(result);
 }
 
-/// The same with the length of `turn` as the angle, up to an error of 8e-11 at a length of 0.1 that
-/// falls with the 7th power.
+/// turned_by() with the length of `turn` as the angle: the error is 8e-11 rad at a length of 0.1
+/// and falls with its 7th power.
 [[nodiscard]] inline Mat3 turned_exactly_by(const Vec3& turn, const Mat3& rotation) noexcept
 {
     // turned_by() takes twice the tangent of half the angle: t + t^3/12 + t^5/120.

@@ -20,8 +20,8 @@ namespace tactus
     return std::bit_cast<float>(value > 0.0F ? bits + 1 : bits - 1);
 }
 
-/// The least float not below / largest float not above a double within float's range: boxes and
-/// error bounds are stored rounded outward.
+/// The least float not below a double within float's range; below, the largest not above it. Boxes
+/// and error bounds are stored rounded outward.
 [[nodiscard]] constexpr float round_up_to_float(double value) noexcept
 {
     const auto nearest = static_cast<float>(value);
@@ -41,8 +41,8 @@ inline constexpr double kRoundedUp = 1.0 + 1e-14;
 inline constexpr double kRootRoundedDown = 1.0 - 1e-15;
 inline constexpr double kRootRoundedUp = 1.0 + 1e-15;
 
-/// Generous factor for a length that only must not be less than the true one, such as a filter's or
-/// a motion that is taken off a certificate; no decision depends on it.
+/// Generous factor for a length that must not be less than the true one and decides nothing, such
+/// as a filter's bound or a motion that is taken off a certificate.
 inline constexpr double kWidened = 1.0 + 1e-12;
 
 /// Squared length of a face normal, from coordinates near 1, up to which it has lost bits; the face

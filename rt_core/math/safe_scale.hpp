@@ -24,8 +24,8 @@ namespace tactus
     return std::bit_cast<double>(inverse << 52U);
 }
 
-/// 1 if the largest coordinate is 0 or between 2^-60 and 2^60, so that products of four or six of
-/// them neither overflow nor vanish; otherwise scale_to_one.
+/// Factor with which products of four or six coordinates neither overflow nor vanish: 1 if the
+/// largest coordinate is 0 or between 2^-60 and 2^60, otherwise scale_to_one().
 [[nodiscard]] inline double safe_scale(double largest) noexcept
 {
     const bool is_safe = largest == 0.0 || (largest >= 0x1p-60 && largest <= 0x1p60);

@@ -16,7 +16,7 @@ struct SeenTriangle
     alignas(32) double corner[3][4]; ///< Rows x, y, z, like those of `edge` and `foot`.
     double edge[3][4];
     double foot[3][4];
-    double corner_sq[4]; ///< Squared length, as below.
+    double corner_sq[4]; ///< Squared lengths, as in the two below.
     double edge_sq[4];
     double foot_sq[4];
     double parameter[4]; ///< Position of the foot on its edge, 0 to 1.

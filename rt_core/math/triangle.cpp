@@ -98,8 +98,8 @@ void find_in_interior(const SeenTriangle& seen, const Vec3& normal, ClosestPoint
     }
 }
 
-/// Nearest point for lengths between 2^-130 and 2^130; `local_sq` is the largest of edges and
-/// corners.
+/// Nearest point for lengths between 2^-130 and 2^130; `local_sq` is the largest squared length of
+/// edges and corners.
 ClosestPoint find_closest(const Triangle& triangle, const SeenTriangle& seen,
                           double local_sq) noexcept
 {
@@ -131,7 +131,7 @@ double local_sq(const SeenTriangle& seen) noexcept
     return std::max(largest_of(seen.corner_sq), largest_of(seen.edge_sq));
 }
 
-/// The same for coordinates so large or small that their products would not be doubles.
+/// find_closest() for coordinates so large or small that their products would not be doubles.
 [[gnu::noinline]] ClosestPoint find_closest_scaled(const Vec3& query,
                                                    const Triangle& triangle) noexcept
 {

@@ -39,7 +39,7 @@ enum class TriangleFeature : std::uint8_t
 /// Point of a triangle nearest to a query point, in the triangle's frame and unit.
 struct ClosestPoint
 {
-    Vec3 point{0.0, 0.0, 0.0}; ///< Point of the triangle.
+    Vec3 point{0.0, 0.0, 0.0}; ///< The triangle's nearest point.
     /// Vector from the query point to `point`, free of the rounding of large coordinates.
     Vec3 gap{0.0, 0.0, 0.0};
     double distance_sq{0.0};

@@ -7,7 +7,7 @@
 namespace tactus
 {
 
-/// True for finite numbers in the range; false for infinity and NaN.
+/// True for finite numbers above 0; below, of at least 0. False for infinity and NaN.
 [[nodiscard]] inline bool is_positive(double value) noexcept
 {
     return std::isfinite(value) && value > 0.0;

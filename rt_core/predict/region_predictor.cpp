@@ -14,19 +14,19 @@ namespace
 /// change of direction.
 constexpr double kVelocityTime_s = 0.01;
 constexpr double kAccelerationTime_s = 0.02;
-/// Weight of the newest error among all of them.
+/// Weight of the newest error in a method's moving average.
 constexpr double kNewestError = 0.2;
 /// Share of the present method's error below which another method replaces it.
 constexpr double kClearlyBetter = 0.9;
-/// Largest widening of a sphere, as a share of what is requested round the tool. Its pages grow
-/// with the square, and a forecast with a larger error is not worth its pages. At 2 diag/s, half
-/// and twice this value leave more frames open.
+/// Largest widening of a predicted sphere, as a share of its reach_m. The number of its pages grows
+/// with the square, and a worse forecast is not worth them. Half and twice this value did worse at
+/// 2 model diagonals a second.
 constexpr double kWidest = 1.0;
 /// Shares of the prediction horizon after which places are predicted.
 constexpr std::array<double, 4> kLeads{0.25, 0.5, 0.75, 1.0};
 
-/// Adds each sphere moved by the region's centre and widened by its radius. A full ranking drops
-/// later pairs' spheres; only those at a tool's present place are missed.
+/// Adds each sphere, moved by `moved.center_m` and widened by `moved.radius_m`. A full ranking
+/// drops it, and reports that only for a tool's present place.
 void add_spheres(const RankedRegion& moved, const CoreCover& spheres,
                  RegionRanking& ranking) noexcept
 {
@@ -46,7 +46,7 @@ void RegionPredictor::observe(const PairMotion& motion, double horizon_s) noexce
     TACTUS_ASSERT(motion.elapsed_s > 0.0 && horizon_s > 0.0);
     motion_ = motion;
     horizon_s_ = horizon_s;
-    follow_hand();
+    follow_device();
     forecast_left_s_ -= motion.elapsed_s;
     if (forecast_left_s_ < 0.5 * motion.elapsed_s)
     {
@@ -54,20 +54,20 @@ void RegionPredictor::observe(const PairMotion& motion, double horizon_s) noexce
     }
 }
 
-void RegionPredictor::follow_hand() noexcept
+void RegionPredictor::follow_device() noexcept
 {
-    const Vec3 hand = motion_.center_m + motion_.way_m;
+    const Vec3 device_m = motion_.center_m + motion_.way_m;
     const double elapsed_s = motion_.elapsed_s;
-    if (has_hand_)
+    if (has_device_)
     {
         const Vec3 before = velocity_;
-        velocity_ +=
-            elapsed_s / (elapsed_s + kVelocityTime_s) * ((hand - hand_m_) / elapsed_s - velocity_);
+        velocity_ += elapsed_s / (elapsed_s + kVelocityTime_s) *
+                     ((device_m - device_m_) / elapsed_s - velocity_);
         acceleration_ += elapsed_s / (elapsed_s + kAccelerationTime_s) *
                          ((velocity_ - before) / elapsed_s - acceleration_);
     }
-    hand_m_ = hand;
-    has_hand_ = true;
+    device_m_ = device_m;
+    has_device_ = true;
 }
 
 void RegionPredictor::judge_forecasts() noexcept
@@ -90,7 +90,8 @@ void RegionPredictor::judge_forecasts() noexcept
     }
 }
 
-/// Displacement of the core's centre in this time, limited by its maximum speed.
+/// Predicted displacement of the core's centre after `horizon_s`, limited by the tool's largest
+/// speed.
 Vec3 RegionPredictor::way_in(Prediction way, double horizon_s) const noexcept
 {
     if (way == Prediction::local_neighbours)

@@ -20,8 +20,8 @@ struct PairMotion
     Vec3 way_m{0.0, 0.0, 0.0};     ///< Vector from there to the device's goal.
     double speed_max_m_per_s{0.0}; ///< Limit of the tool's speed towards its goal.
     double elapsed_s{0.0};         ///< Time since the last frame; > 0.
-    /// Surface of the last query: direction towards the tool, and the tool's distance from contact.
-    /// Zero: none nearby.
+    /// Direction from the surface of the last query to the tool, and the tool's distance from
+    /// contact; zero if no surface is near.
     Vec3 outward{0.0, 0.0, 0.0};
     double gap_m{0.0};
 };
@@ -29,14 +29,15 @@ struct PairMotion
 /// Contact-region prediction: the place of this pair's tool after the time that loading takes. One
 /// instance per pair of tool and object; haptic thread.
 ///
-/// All methods predict the tool's place after the prediction horizon. At its end each is compared
-/// with the tool's place and predicts again. A method's recent error widens its spheres, at most to
-/// twice the size, and the automatic choice is the method with the least error. So speed, latency
-/// and noise act through their effect on a forecast.
+/// Every method predicts the tool's place after the prediction horizon. At the horizon's end each
+/// forecast is compared with the actual place, and a new one is made. A method's recent error
+/// widens its spheres, at most to twice the size. Automatic choice takes the method with the least
+/// error.
 class RegionPredictor
 {
 public:
-    /// Observes a frame. `horizon_s` > 0: the present prediction horizon of requests.
+    /// Takes the tool's motion in a frame; `horizon_s` > 0 is the present prediction horizon, the
+    /// time that a request takes.
     void observe(const PairMotion& motion, double horizon_s) noexcept TACTUS_NONBLOCKING;
 
     /// Adds the spheres to the ranking, highest priority first, each widened by `reach_m`: at their
@@ -55,7 +56,7 @@ public:
     [[nodiscard]] Prediction limited() const noexcept { return limited_; }
 
 private:
-    void follow_hand() noexcept;
+    void follow_device() noexcept;
     void judge_forecasts() noexcept;
     [[nodiscard]] Vec3 way_in(Prediction way, double horizon_s) const noexcept;
     [[nodiscard]] double error_of(Prediction way) const noexcept
@@ -65,11 +66,12 @@ private:
 
     PairMotion motion_;
     double horizon_s_{0.0};
-    Vec3 hand_m_{0.0, 0.0, 0.0};
+    Vec3 device_m_{0.0, 0.0, 0.0};
     Vec3 velocity_{0.0, 0.0, 0.0};
     Vec3 acceleration_{0.0, 0.0, 0.0};
-    bool has_hand_{false};
-    std::array<Vec3, kPredictions> forecasts_m_{}; ///< Places in forecast_left_s_ from now.
+    bool has_device_{false};
+    /// Forecast of each method, due in forecast_left_s_.
+    std::array<Vec3, kPredictions> forecasts_m_{};
     double forecast_left_s_{0.0};
     bool has_forecasts_{false};
     std::array<double, kPredictions> errors_m_{};

@@ -12,19 +12,18 @@
 namespace tactus
 {
 
-/// Memory of a pair of tool and object between queries: where the search begins.
+/// Memory of a pair of tool and object between queries: where the next search begins.
 struct QueryMemory
 {
     std::uint32_t block{kNoNode}; ///< Block of the last nearest face; any value is safe.
     float limit{0.0F}; ///< Last upper bound on a point's distance, in quanta; any value is safe.
 };
 
-/// Passes to `search` the blocks that matter: the remembered one first, then nearest first.
+/// Passes to `search` the blocks that may matter: the remembered block first, then by distance.
 ///
-/// `bound()` of a search is the distance from the probe, in quanta, beyond which nothing matters.
-/// `test_block(index)` returns false if the budget is spent or enough is known. `leave(gap)`
-/// receives subtrees that were not visited, which are at least `gap` quanta from the probe.
-/// Afterwards the search remembers the block with the nearest face.
+/// `bound()` of `search` is the distance from the probe, in quanta, beyond which faces do not
+/// matter. `test_block(index)` tests a block; false ends the search. `leave(gap)` is called for
+/// each unvisited subtree, which is at least `gap` quanta from the probe.
 template <typename Probe, typename Search>
 void search_blocks(const AbTree& tree, const Probe& probe, WalkBudget& budget,
                    const QueryMemory& memory, Search& search) noexcept
@@ -49,26 +48,28 @@ void search_blocks(const AbTree& tree, const Probe& probe, WalkBudget& budget,
     }
 }
 
-/// Proven results of a search, in metres from the core.
+/// Proven bounds from a search, in metres from the core.
 struct Findings
 {
-    double exact_lower_m{0.0}; ///< Lower bound on the nearest exact face.
-    /// Lower bound on the surface that faces within the tolerance stand for.
+    double exact_lower_m{0.0}; ///< Lower bound on the distance of the nearest exact face.
+    /// Lower bound on the distance of the surface that coarse faces within the tolerance stand for.
     double tolerated_lower_m{kInfinity};
-    double upper_m{0.0};   ///< Upper bound on the distance to the surface.
-    double open_m{0.0};    ///< Lower bound on inexact and unvisited faces.
-    double pruned_m{0.0};  ///< Lower bound on faces left out because they do not matter.
-    double dropped_m{0.0}; ///< Lower bound on exact triangles that did not fit.
+    double upper_m{0.0}; ///< Upper bound on the distance of the surface.
+    double open_m{0.0};  ///< Lower bound on the distance of inexact and unvisited faces.
+    /// Lower bound on the distance of faces left out because they do not matter.
+    double pruned_m{0.0};
+    /// Lower bound on the distance of exact triangles that did not fit into the list.
+    double dropped_m{0.0};
 };
 
-/// True if a nearest face is known and no other can be nearer.
+/// True if a nearest face is known and no other face can be nearer.
 [[nodiscard]] inline bool is_nearest_proven(const Findings& found) noexcept
 {
     const double lower_m = std::min(found.exact_lower_m, found.tolerated_lower_m);
     return lower_m <= found.open_m && lower_m <= found.pruned_m && lower_m < kInfinity;
 }
 
-/// The answer within `reach_m`, without the nearest face and points, which the caller fills in.
+/// Answer within `reach_m`, without the nearest face and points, which the caller fills in.
 [[nodiscard]] inline DistanceAnswer answer_from(const Findings& found, double reach_m) noexcept
 {
     DistanceAnswer answer;
@@ -76,7 +77,7 @@ struct Findings
     answer.lower_m = std::max(0.0, std::min({found.exact_lower_m, found.tolerated_lower_m,
                                              found.open_m, found.pruned_m}));
     const double open = std::min(found.open_m, found.dropped_m);
-    // Less than `open`, where inexact faces may begin.
+    // The radius is less than `open`, where inexact faces may begin.
     answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * (1.0 - 0x1p-52)) : -1.0;
     const bool is_beyond = answer.lower_m > 0.0 && answer.lower_m == reach_m;
     const AnswerKind known = found.exact_lower_m <= std::max(found.tolerated_lower_m, 0.0)
@@ -86,7 +87,7 @@ struct Findings
                   : is_nearest_proven(found) ? known
                   : is_beyond                ? AnswerKind::separated
                                              : AnswerKind::bounded;
-    TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be NaN: then L is 0.
+    TACTUS_ASSERT(!(answer.lower_m > answer.upper_m)); // U may be NaN; L is 0 then.
     return answer;
 }
 

@@ -31,8 +31,8 @@ BoxView::BoxView(const MeshPlacement& there, double units_per_m, float slack) no
     }
 }
 
-/// The centre is placed in double precision because it is far from the origin. Rounding of the
-/// extents in single precision is less than kPairMargin of them.
+/// Places a box: its centre in double precision, as it is far from the origin, and its extents in
+/// single precision, with a rounding of less than kPairMargin of them.
 KernelBox BoxView::of(const Aabb& box) const noexcept
 {
     const Vec3 center = there_.local_to_world(0.5 * (to_vec3(box.low) + to_vec3(box.high)));

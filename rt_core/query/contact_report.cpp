@@ -19,7 +19,7 @@ namespace tactus
 namespace
 {
 
-/// A face at the nearest point, and the index of its corner there.
+/// Face with a corner at the nearest point, and the index of that corner.
 struct IncidentFace
 {
     FaceId face{};
@@ -29,7 +29,8 @@ struct IncidentFace
 
 using Incident = StaticVector<IncidentFace, kMaxIncidentFaces>;
 
-/// Angle by Kahan's half-angle formula, accurate at any angle. Zero if a vector has no length.
+/// Angle between two vectors by Kahan's half-angle formula, accurate at any angle. Zero if a vector
+/// has no length.
 double angle_between(const Vec3& a, const Vec3& b) noexcept
 {
     const Vec3 u = unit_or_zero(a);
@@ -49,7 +50,7 @@ public:
     {
     }
 
-    /// False if the normal is not known.
+    /// Finds the normal at the nearest point; false if it is not known.
     [[nodiscard]] bool try_find_normal(Vec3& normal) noexcept
     {
         const DistanceAnswer& answer = surface_.answer;
@@ -102,7 +103,8 @@ private:
         return to_triangle(corners(i));
     }
 
-    /// Collects faces with a corner at `at`, ordered by id so that sums have the same bits.
+    /// Collects the faces with a corner at `at`, ordered by id so that sums have the same bits.
+    /// False if they don't fit.
     [[nodiscard]] bool try_gather(const Vec3f& at, Incident& incident) const noexcept
     {
         for (std::uint32_t i = 0; i < surface_.count; ++i)
@@ -174,7 +176,7 @@ private:
         return unit_or_zero(sum);
     }
 
-    /// True if the faces follow one another round the vertex and close, with none left over.
+    /// True if the faces at a vertex form one closed fan, with no face left over.
     [[nodiscard]] bool is_one_fan(const Incident& incident) const noexcept
     {
         std::size_t at = 0;
@@ -210,8 +212,8 @@ private:
     bool is_manifold_{false};
 };
 
-/// Closest points of core and triangle. For a convex body libccd decides intersection if the bounds
-/// leave that open.
+/// Closest points of core and triangle. libccd decides whether a convex body meets the triangle if
+/// the bounds leave that open.
 ClosestPoints closest_of(const PlacedCore& core, const Triangle& triangle,
                          ContactReport& report) noexcept
 {
@@ -227,8 +229,8 @@ ClosestPoints closest_of(const PlacedCore& core, const Triangle& triangle,
     return closest;
 }
 
-/// Faces of a surface within a distance, by their indices in it. Those that may be among the
-/// nearest kMaxContacts come first: once they are measured, few others need to be.
+/// Faces of a surface within a distance, as indices into it. Faces that may be among the nearest
+/// kMaxContacts come first: once they are measured, few others need a measurement.
 class NearFirst
 {
 public:
@@ -274,7 +276,7 @@ private:
     Places places_;
 };
 
-/// True if a contact of this face, at least `distance_m` away, could be kept.
+/// True if a contact of this face, at least `distance_m` away, would be kept in `contacts`.
 bool may_be_kept(double distance_m, FaceId face, const ContactSet& contacts) noexcept
 {
     return !contacts.full() || comes_before(Contact{.face = face, .distance_m = distance_m},
@@ -324,7 +326,7 @@ double size_of(const Triangle& triangle) noexcept
                                          (triangle[2] - triangle[0]).squaredNorm()));
 }
 
-/// True if a point within `reach_m` of the triangle's plane may be over the triangle.
+/// True if one of the points, within `reach_m` of the triangle's plane, may be over the triangle.
 bool may_be_over(const CoreCorners& points, double reach_m, const Triangle& triangle,
                  double size_m) noexcept
 {
@@ -333,7 +335,7 @@ bool may_be_over(const CoreCorners& points, double reach_m, const Triangle& tria
                                { return (point - triangle[0]).squaredNorm() <= far_m * far_m; });
 }
 
-/// Adds corners of the core that are over a face, on either side.
+/// Adds contacts of the core's corners that are over a face, on either side.
 void add_corners(const CoreCorners& corners, double reach_m, const Triangle& triangle, FaceId face,
                  TouchReport& touches) noexcept
 {
@@ -355,7 +357,7 @@ void add_corners(const CoreCorners& corners, double reach_m, const Triangle& tri
     }
 }
 
-/// True if a contact of the triangle, at least `distance_m` away, would be kept in some direction.
+/// True if a contact of the triangle, at least `distance_m` away, may be an end in some direction.
 bool may_be_an_end(const Triangle& triangle, double size_m, double distance_m,
                    const ContactEnds& ends) noexcept
 {
@@ -364,8 +366,8 @@ bool may_be_an_end(const Triangle& triangle, double size_m, double distance_m,
             is_farther_in_any(most_end_reaches(triangle, distance_m), ends.reaches_m));
 }
 
-/// Adds the slab of a face that is `distance_m` away, without its nearest point. False if the slab
-/// proves much less.
+/// Adds the slab of a face that is `distance_m` away, without a measurement. False, with nothing
+/// added, if the separating plane proves less than kHardlyLess of that distance.
 bool try_add_slab(const PlacedCore& core, const Triangle& triangle, double distance_m,
                   TouchReport& touches) noexcept
 {
@@ -379,8 +381,8 @@ bool try_add_slab(const PlacedCore& core, const Triangle& triangle, double dista
     return proves_it;
 }
 
-/// Between nearest points exact up to rounding, each shape is on its own side of the plane across
-/// them. If the points are less accurate, no direction is proven.
+/// Adds the slab of a measured face: each shape is on its own side of the plane across the two
+/// nearest points. If the points are too inaccurate, the slab covers all directions.
 void add_slab(const Vec3& normal, const ClosestPoints& closest, TouchReport& touches) noexcept
 {
     constexpr double kWellFound = 1e-6;
@@ -435,7 +437,7 @@ void report_contacts(const PlacedCore& core, double radius_m, const AbTree& tree
     TACTUS_ASSERT(surface.count <= surface.triangles.size());
     report.clear();
     const DistanceAnswer& answer = surface.answer;
-    // No unseen face may touch: either all is exact that far, or all is farther.
+    // No unseen face may touch: all faces are exact up to the radius, or all surface is farther.
     report.is_complete = answer.certified_radius_m >= radius_m || answer.lower_m > radius_m;
     add_contacts(core, radius_m, tree, surface, report);
     NearestFeature nearest(tree, surface);

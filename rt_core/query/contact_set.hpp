@@ -24,7 +24,7 @@ namespace tactus
     return length > 0.0 ? Vec3(v / length) : Vec3(0.0, 0.0, 0.0);
 }
 
-/// Unit normal; zero for a triangle without area.
+/// Unit normal of a triangle; zero for a triangle without area.
 [[nodiscard]] inline Vec3 normal_of(const Triangle& triangle) noexcept
 {
     const double longest_sq = std::max({(triangle[1] - triangle[0]).squaredNorm(),
@@ -52,7 +52,7 @@ namespace tactus
            std::tie(b.distance_m, b.face, b.tool_face);
 }
 
-/// Inserts in order. If the set is full, drops the farthest and returns false.
+/// Inserts a contact in order. If the set is full, drops the farthest contact and returns false.
 [[nodiscard]] inline bool keep_nearest(const Contact& contact, ContactSet& contacts) noexcept
 {
     TACTUS_ASSERT(!std::isnan(contact.distance_m)); // NaN would have no order.
@@ -74,8 +74,9 @@ namespace tactus
     return !is_full;
 }
 
-/// Heights for the first half of ContactEnds' directions. Their coordinates are -1, 0 or 1, x
-/// changing first, up to but without (0, 0, 0).
+/// Heights of a point along the first half of the directions of ContactEnds; the other half are
+/// opposite. Directions have coordinates -1, 0 or 1 and are enumerated with x changing first, up to
+/// (0, 0, 0), which is left out.
 using EndHeights = std::array<double, kContactDirections / 2>;
 inline constexpr double kEdgeEnd = std::numbers::sqrt2;
 inline constexpr double kCornerEnd = std::numbers::sqrt3;
@@ -83,7 +84,7 @@ inline constexpr EndHeights kEndLengths{kCornerEnd, kEdgeEnd,   kCornerEnd, kEdg
                                         kEdgeEnd,   kCornerEnd, kEdgeEnd,   kCornerEnd, kEdgeEnd,
                                         1.0,        kEdgeEnd,   1.0};
 
-/// Heights of a point along each direction, times the direction's length.
+/// Returns a point's height along each of these directions, times the direction's length.
 [[nodiscard]] inline EndHeights end_heights(const Vec3& point_m) noexcept
 {
     const double x = point_m[0];
@@ -100,8 +101,8 @@ inline constexpr EndHeights kEndLengths{kCornerEnd, kEdgeEnd,   kCornerEnd, kEdg
 }
 inline constexpr double kEndPerDistance = 10.0;
 
-/// Keeps the farthest contact of each direction, in any order of contacts: of equally far ones the
-/// first by comes_before().
+/// Keeps `contact` as an end in each direction in which it is the farthest. The first by
+/// comes_before() of equally far contacts is kept, in any order of calls.
 inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
 {
     const double less_m = kEndPerDistance * contact.distance_m;
@@ -125,14 +126,14 @@ inline void keep_ends(const Contact& contact, ContactEnds& ends) noexcept
     ends.is_empty = false;
 }
 
-/// Reach of a contact in each direction, less its weighted distance.
+/// Reach of a contact in each direction: its height less kEndPerDistance x its distance.
 using EndReaches = std::array<double, kContactDirections>;
 
-/// Allowance for rounding of a contact's place, its distance and the sums below; many times the
-/// actual error.
+/// Allowance for rounding of a contact's place, distance and reach; many times the actual error.
 inline constexpr double kEndRounding = 1e-12;
 
-/// Upper bounds on the reaches of contacts on this triangle, at least `distance_m` from the core.
+/// Upper bounds on the reaches of contacts on a triangle that is at least `distance_m` from the
+/// core.
 [[nodiscard]] inline EndReaches most_end_reaches(const Triangle& triangle,
                                                  double distance_m) noexcept
 {
@@ -154,19 +155,19 @@ inline constexpr double kEndRounding = 1e-12;
     return reaches_m;
 }
 
-/// True if the first is at least as far as the second in any direction.
+/// True if `a` is at least as far as `b` in any direction.
 [[nodiscard]] inline bool is_farther_in_any(const EndReaches& a, const EndReaches& b) noexcept
 {
     bool is_farther = false;
-    for (std::size_t i = 0; i < a.size(); ++i) // No early exit: all directions at once.
+    for (std::size_t i = 0; i < a.size(); ++i) // No early exit, for all directions at once.
     {
         is_farther |= a[i] >= b[i];
     }
     return is_farther;
 }
 
-/// False only if is_farther_in_any() is false for most_end_reaches() of a triangle within `size_m`
-/// of its first corner. Takes a fifth of that work.
+/// Cheap test before is_farther_in_any() for most_end_reaches() of a triangle whose points are
+/// within `size_m` of its first corner: false only if that is false. Takes a fifth of the work.
 [[nodiscard]] inline bool may_be_farther_in_any(const Triangle& triangle, double size_m,
                                                 double distance_m,
                                                 const EndReaches& reaches_m) noexcept
@@ -175,7 +176,7 @@ inline constexpr double kEndRounding = 1e-12;
     const double more_m = size_m + 4.0 * kEndRounding * place_m - kEndPerDistance * distance_m;
     const EndHeights heights_m = end_heights(triangle[0]);
     bool may_be = false;
-    for (std::size_t i = 0; i < heights_m.size(); ++i) // No early exit: all directions at once.
+    for (std::size_t i = 0; i < heights_m.size(); ++i) // No early exit, for all directions at once.
     {
         const double height_m = heights_m[i] * (1.0 / kEndLengths[i]);
         may_be |= more_m + height_m >= reaches_m[i];
@@ -184,8 +185,8 @@ inline constexpr double kEndRounding = 1e-12;
     return may_be;
 }
 
-/// Adds a face to the slab with the most similar normal, or makes a new slab. Without a normal no
-/// direction is proven: the slab covers all directions.
+/// Adds a face to the slab with the most similar normal, or to a new slab. A face without a normal
+/// makes the slab cover all directions.
 inline void keep_slab(const Vec3& normal, double distance_m, TouchReport& touches) noexcept
 {
     constexpr double kSameSlab = 0.05;

@@ -23,7 +23,7 @@ namespace
 
 static_assert(sizeof(ccd_real_t) == sizeof(double), "libccd is built for single precision");
 
-/// A body relative to its centre and scaled, as both shapes are handed to libccd.
+/// Body in the form for libccd: relative to its centre, and multiplied by `scale`.
 struct ScaledBody
 {
     const ConvexBody& body;
@@ -40,7 +40,8 @@ Vec3 from(const ccd_vec3_t* v) noexcept
     return {v->v[0], v->v[1], v->v[2]};
 }
 
-/// Directions from libccd have any length, and zero length between flat shapes.
+/// Support function of the body for libccd, whose directions may have any length, also zero between
+/// flat shapes.
 void support_body(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) noexcept
 {
     const auto& [body, scale] = *static_cast<const ScaledBody*>(object);
@@ -58,7 +59,7 @@ void support_triangle(const void* object, const ccd_vec3_t* direction, ccd_vec3_
     put(out, *farthest);
 }
 
-/// Any start works.
+/// First direction for libccd: to a corner of the triangle. Any start works.
 void begin_at_the_triangle(const void* /*body*/, const void* triangle, ccd_vec3_t* out) noexcept
 {
     put(out, (*static_cast<const Triangle*>(triangle))[0]);

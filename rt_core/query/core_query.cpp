@@ -20,17 +20,17 @@ namespace
 
 static_assert(kBlockVertices == CornersAtCore::kCorners);
 
-/// Share of the tolerance by which an answer may differ from that with every face measured.
+/// Share of the tolerance by which an answer may change if not every face is measured.
 constexpr double kUnmeasuredShare = 0x1p-4;
-/// Distances that differ by fewer quanta may be equal.
+/// Difference in quanta up to which distances may be equal.
 constexpr double kTied = 0x1p-20;
-/// Rounding of heights of placed corners, relative to their coordinates.
+/// Bound on the rounding of heights of placed corners, relative to their coordinates.
 constexpr double kPlaceRounding = 1e-14;
 
-/// More quanta than any model has, and far from overflow.
+/// Distance in quanta that is larger than any model and far from overflow.
 constexpr double kMostQuanta = 0x1p100;
 
-/// The oriented box round a core, in the kernels' form.
+/// Returns the oriented box of a core, in the kernels' form.
 KernelBox make_kernel_box(const PlacedCore& core, float quantum_m) noexcept
 {
     KernelBox box{};
@@ -56,7 +56,7 @@ KernelBox make_kernel_box(const PlacedCore& core, float quantum_m) noexcept
     return box;
 }
 
-/// One query. Kernels bound the distances of boxes from the one round the core.
+/// Search of one query. Kernels bound the distances of boxes from the oriented box of the core.
 class CoreSearch
 {
 public:
@@ -98,13 +98,14 @@ public:
 
     void leave(float gap) noexcept { open_ = std::min(open_, static_cast<double>(gap) * quantum_); }
 
-    /// False if the budget is spent or enough is known.
+    /// Tests the faces of a block; false if the budget is spent or enough is known.
     [[nodiscard]] bool test_block(std::uint32_t index) noexcept
     {
         const BlockGeometry& block = tree_.block(index);
         if (!budget_.take_triangles(face_count(block)))
         {
-            open_ = std::min(open_, 0.0); // Its parent's bound may be gone with it.
+            // Nothing is proven, as the bound of the block's box may be lost.
+            open_ = std::min(open_, 0.0);
             return false;
         }
         const BlockSide& side = tree_.side(index);
@@ -135,7 +136,7 @@ public:
         found.exact_lower_m = exact_lower_;
         found.tolerated_lower_m = tolerated_lower_;
         found.upper_m = upper_;
-        // No face is nearer than one that meets the core, wherever it is.
+        // No face is nearer than one that meets the core, so `open_m` need not be below zero.
         found.open_m = tree_.is_complete() ? std::max(open_, 0.0) : 0.0;
         found.pruned_m = limit_ > looked_ ? worth_m() : kInfinity;
         found.dropped_m = triangles_.dropped_m();
@@ -158,7 +159,7 @@ private:
         std::uint32_t block;
         std::uint32_t lane;
         ErrorCode error;
-        double error_m; ///< Error as a length.
+        double error_m; ///< Error of the face, in metres.
     };
 
     [[nodiscard]] bool is_coarse(const Face& face) const noexcept
@@ -166,21 +167,22 @@ private:
         return face.error > tolerance_;
     }
 
-    /// Cheap bounds on a face's distance. For a convex body in reach, also the closest points.
+    /// Cheap bounds on a face's distance, with the closest points of a convex body in reach.
     struct Measure
     {
         CoreBounds bounds;
         std::optional<ClosestPoints> closest;
     };
 
-    /// Distance beyond which faces change nothing. Never grows: faces left out stay farther.
+    /// Distance beyond which faces change no result. Never grows, so that faces left out stay
+    /// beyond it.
     [[nodiscard]] double worth_m() const noexcept
     {
         return limit_ > looked_ ? std::max(looked_, share_ * limit_)
                                 : std::max(std::min(looked_, triangles_.dropped_m()), limit_);
     }
 
-    /// True if the whole block is too far from a convex body along one direction to matter.
+    /// True if one direction proves that the whole block is too far from a convex body to matter.
     [[nodiscard]] bool is_apart(const BlockGeometry& block, const BlockSide& side) noexcept
     {
         budget_.spend(WorkCost::block_row);
@@ -202,7 +204,7 @@ private:
         double lower = known.bounds.lower - face.error_m;
         if (is_left && lower <= worth && lower < open_)
         {
-            // Measured as in refinement: a gap that suffices there is not open here.
+            // Measures as refinement does, so that a gap that suffices there is not open here.
             const ClosestPoints closest = measure(face, known);
             lower = closest.distance - closest.distance_error - face.error_m;
         }
@@ -227,7 +229,8 @@ private:
         const std::array<std::uint8_t, 3> corners{
             block.corners[0][face.lane], block.corners[1][face.lane], block.corners[2][face.lane]};
         Measure found{core_.bounds(corners_, corners, limit_m), std::nullopt};
-        if (tolerance_ != 0 && !separations_ && found.bounds.lower <= limit_m) // No convex body.
+        // The core is no convex body.
+        if (tolerance_ != 0 && !separations_ && found.bounds.lower <= limit_m)
         {
             found.bounds.lower = std::max(found.bounds.lower, bound_along_way(corners));
         }
@@ -245,9 +248,10 @@ private:
 
     void measure_body(const Face& face, double limit_m, Measure& found) noexcept
     {
-        constexpr double kHardlyMore = 1.05; // Gain that is worth one more direction.
+        // Ratio of bounds above which a further direction is worth its cost.
+        constexpr double kHardlyMore = 1.05;
         budget_.spend(WorkCost::gjk);
-        Vec3 direction(0.0, 0.0, 0.0); // Same start as PlacedCore::closest(), so the same bits.
+        Vec3 direction(0.0, 0.0, 0.0); // The start of PlacedCore::closest(), for the same bits.
         const GjkAnswer answer = gjk_distance(core_.body(), triangle_of(face), direction, limit_m);
         const ClosestPoints closest = to_closest_points(answer);
         if (answer.lower > kHardlyMore * found.bounds.lower)
@@ -258,7 +262,7 @@ private:
             std::max(found.bounds.lower, closest.distance - closest.distance_error);
         found.bounds.upper = closest.distance + closest.distance_error;
         found.bounds.meet = closest.meet;
-        if (!(answer.lower > limit_m)) // Otherwise the search ended at the limit.
+        if (!(answer.lower > limit_m)) // If false, the search ended at the limit.
         {
             found.closest = closest;
         }
@@ -282,13 +286,14 @@ private:
         return closest;
     }
 
-    /// True for a corner over a side of a box: most faces under a flat box have one.
+    /// True if a corner of the triangle is nearest to a box, as for most faces under a flat box;
+    /// costs less.
     [[nodiscard]] bool is_found_soon(const ClosestPoints& closest) const noexcept
     {
         return core_.is_box() && closest.feature <= TriangleFeature::corner_2;
     }
 
-    /// Adds a face that is exact or within the tolerance.
+    /// Adds a face that counts as the surface: it is exact or within the tolerance.
     void add_surface(const Face& face, const Measure& known) noexcept
     {
         const PrimId prim = tree_.side(face.block).prims[face.lane];
@@ -309,21 +314,21 @@ private:
             keep_if_nearest(closest, id, face.block);
             measured_lower_ = std::min(measured_lower_, lower - face.error_m);
         }
-        lower -= face.error_m; // Bound on the source surface that the face stands for.
+        lower -= face.error_m; // Lower bound on the source mesh's surface that the face stands for.
         largest_tolerated_ = std::max(largest_tolerated_, face.error);
         if (lower <= reach_)
         {
             triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)},
                            std::max(0.0, lower));
         }
-        // If a nearer exact face was left out, the answer is within the tolerance.
+        // The face does not make the answer exact if a nearer exact face may have been left out.
         const bool is_exact = !is_left_out || lower >= nearest_.distance - kTied * quantum_;
         double& least = face.error == 0 && is_exact ? exact_lower_ : tolerated_lower_;
         least = std::min(least, lower);
         met_ += meets ? 1U : 0U;
     }
 
-    /// Takes an upper bound on the distance to the source.
+    /// Takes an upper bound on the distance to the source mesh's surface.
     void take_upper(double upper_m) noexcept
     {
         upper_ = std::min(upper_, upper_m);
@@ -336,9 +341,9 @@ private:
         upper_ = face.error == 0 ? std::min(upper_, upper_m) : upper_;
     }
 
-    /// True if measuring a face would change the answer by less than a small part of the tolerance:
-    /// a flat tool is about as far from all faces below it. Without a tolerance all faces are
-    /// measured, so that the answer does not depend on their order.
+    /// True if a measurement of the face would change the answer by less than a small part of the
+    /// tolerance: a flat tool is about as far from all faces below it. Without a tolerance all
+    /// faces are measured, so that their order does not matter.
     [[nodiscard]] bool tells_nothing(const Face& face, double lower_m) const noexcept
     {
         return tolerance_ != 0 && lower_m >= nearest_.distance - little_m_ &&
@@ -346,7 +351,8 @@ private:
                (face.error != 0 || lower_m >= upper_ - little_m_);
     }
 
-    /// Gap between core and face along the direction to the nearest measured face.
+    /// Lower bound on the gap between core and face, along the direction to the nearest measured
+    /// face.
     [[nodiscard]] double bound_along_way(const std::array<std::uint8_t, 3>& corners) const noexcept
     {
         double least = kInfinity;
@@ -359,7 +365,7 @@ private:
         return least - way_.cwiseAbs().dot(half) - kPlaceRounding * half.sum();
     }
 
-    /// True if the face may be the nearest. Of equally near faces the lowest is taken.
+    /// True if the face may be the nearest. The lowest id decides between equally near faces.
     [[nodiscard]] bool may_be_nearest(FaceId face, double lower_m) const noexcept
     {
         return lower_m <= limit_ && (nearest_.distance > 0.0 || face < nearest_face_);
@@ -402,29 +408,33 @@ private:
     const PlacedCore& core_;
     double quantum_;
     double reach_;
-    double share_; ///< Share of the best distance beyond which faces are not tested.
+    double share_; ///< Share of the best known distance beyond which faces are not tested.
     std::uint32_t enough_;
-    ErrorCode tolerance_; ///< Faces with no larger error count as the surface.
-    double little_m_;     ///< Small part of the tolerance.
-    double looked_;       ///< Search distance: a face beyond the reach may stand for surface within
-                          ///< it.
+    ErrorCode tolerance_; ///< Largest error of faces that count as the surface.
+    double little_m_;     ///< Small part of the tolerance, in metres.
+    /// Range of the search: the reach plus the tolerance, as a farther face may stand for surface
+    /// within the reach.
+    double looked_;
     WalkBudget& budget_;
     KernelBox box_;
     NearestTriangles triangles_;
-    std::optional<Separations> separations_; ///< Separating directions of a convex body.
+    std::optional<Separations> separations_; ///< Separating directions; only for a convex body.
     CornersAtCore corners_;                  ///< Corners of the tested block.
-    double open_{kInfinity};                 ///< Lower bound on inexact faces.
-    double exact_lower_{kInfinity};          ///< Lower bound on exact faces.
-    double tolerated_lower_{kInfinity};      ///< Lower bound on the surface that faces within the
-                                             ///< tolerance stand for.
-    double upper_{kInfinity};                ///< Upper bound on the distance to the source.
-    double limit_{kInfinity};                ///< Upper bound on the distance to the surface or the
-                                             ///< source.
-    double measured_lower_{kInfinity}; ///< Lower bound from the measured faces of the surface.
+    double open_{kInfinity};                 ///< Lower bound on the distance of inexact faces.
+    double exact_lower_{kInfinity};          ///< Lower bound on the distance of exact faces.
+    /// Lower bound on the distance of surface that coarse faces within the tolerance stand for.
+    double tolerated_lower_{kInfinity};
+    double upper_{kInfinity}; ///< Upper bound on the distance to the source mesh's surface.
+    /// Upper bound on the distance to the source mesh's surface or to a face that counts as it.
+    double limit_{kInfinity};
+    /// Lower bound on the distance from the measured faces of the surface.
+    double measured_lower_{kInfinity};
     ErrorCode largest_tolerated_{0};
-    std::uint32_t met_{0}; ///< Faces of the surface that meet the core.
+    std::uint32_t met_{0}; ///< Number of faces of the surface that meet the core.
     ClosestPoints nearest_{.distance = kInfinity};
-    Vec3 way_{0.0, 0.0, 0.0}; ///< Direction to nearest_, in the core's axes; of length 1, or 0.
+    /// Direction from the core to nearest_, in the axes of the core's box; of length 1, or 0 if
+    /// unknown.
+    Vec3 way_{0.0, 0.0, 0.0};
     FaceId nearest_face_{};
     std::uint32_t nearest_block_{kNoNode};
 };

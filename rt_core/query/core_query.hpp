@@ -13,12 +13,12 @@ namespace tactus
 {
 
 /// gather_surface() for any core: answers the distance question and collects the triangles of the
-/// surface within `reach_m` of the core, in one traversal of the tree. A point runs the code for
-/// points, in single precision first. For other cores a face is measured in double precision if its
-/// bounds leave open whether it is in reach or the nearest.
+/// surface within `reach_m` of the core, in one traversal. A point runs the code of
+/// surface_query.hpp. A face is measured for other cores in double precision if its bounds leave
+/// open whether it is in reach or the nearest.
 ///
-/// Ends if `enough` faces of the surface meet the core: no distance is below zero. The search order
-/// then decides which meeting face is nearest and which are listed. Nothing is certified then.
+/// Ends if `enough` faces of the surface meet the core, as no distance is below zero. The search
+/// order then decides which of them is the nearest and which are listed, and nothing is certified.
 ///
 /// Writes `surface` completely. Haptic thread. Cost: the nodes near the box round the core, about
 /// 30 ns for each triangle there and 0.1 to 2 us for each that is measured.

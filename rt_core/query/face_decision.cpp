@@ -147,7 +147,7 @@ Meeting FaceDecision::meeting_of(const FacePair& pair) const noexcept
     return {{question_.tool.face_of(tool_prim), question_.object.face_of(prim)}, tool_prim, prim};
 }
 
-/// Bounds the distances of queued pairs that do not meet.
+/// Bounds the distances of the queued pairs in `apart`, one bit each, which do not meet.
 void FaceDecision::bound_distances(std::uint32_t apart, std::uint32_t count) noexcept
 {
     question_.object.kernels().pair_distances(queue_.rows(), count, distances_);
@@ -170,8 +170,9 @@ void FaceDecision::bound_distances(std::uint32_t apart, std::uint32_t count) noe
     }
 }
 
-/// Drops candidates with nearer rivals, and possible ends except one per direction. If too many
-/// remain, measures all.
+/// Makes room in the full list: drops candidates that can no longer be nearest or contacts, except
+/// for the possible ends, one per direction. If the list stays nearly full, measures all
+/// candidates.
 void FaceDecision::make_room() noexcept
 {
     const double contact_m = findings_.contact_zone_m();
@@ -194,8 +195,8 @@ void FaceDecision::make_room() noexcept
     }
 }
 
-/// Takes the upper bound of a pair. The nearest pair cannot be farther, in space or along the
-/// direction between the two.
+/// Takes the upper bound of a pair as a bound on the surfaces' distance. If it is the lowest so
+/// far, stores the pair and its direction.
 void FaceDecision::take_bound(std::uint32_t lane, const FacePair& pair) noexcept
 {
     const double upper_m = static_cast<double>(distances_.upper[lane]) * quantum_m_ * kRoundedUp;
@@ -207,7 +208,8 @@ void FaceDecision::take_bound(std::uint32_t lane, const FacePair& pair) noexcept
     ++way_number_;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        way_[axis] = distances_.way[axis][lane] * (1.0F - 0x1p-20F); // Not longer than 1.
+        // The factor keeps the length of the direction within 1.
+        way_[axis] = distances_.way[axis][lane] * (1.0F - 0x1p-20F);
     }
 }
 
@@ -223,8 +225,8 @@ void FaceDecision::measure(const FacePair& pair) noexcept
                         shared_.closest_points(tool_triangle(pair), triangle));
 }
 
-/// Index of the candidate that may be farthest in each direction, of those that could only be ends.
-/// kMaxCandidates if none may be farther than the known end.
+/// Finds the candidate that may be the farthest end in each direction, of those that could only be
+/// ends. Returns indices; kMaxCandidates if none may be farther than the known end.
 FaceDecision::FarthestEnds FaceDecision::farthest_ends() const noexcept
 {
     FarthestEnds farthest{};
@@ -265,8 +267,8 @@ FaceDecision::FarthestEnds FaceDecision::farthest_ends() const noexcept
     return farthest;
 }
 
-/// Measures one candidate per direction. Others near the same end of the contact area serve as
-/// well.
+/// Measures the farthest possible end of each direction. Other candidates near the same end would
+/// serve as well.
 void FaceDecision::measure_ends() noexcept
 {
     const FarthestEnds farthest = farthest_ends();
@@ -310,7 +312,8 @@ void FaceDecision::leave_coarse(const MeshFace& tool_face, const MeshFace& face)
     findings_.leave(closest.distance - closest.distance_error - tool_face.error_m - face.error_m);
 }
 
-/// Takes distances between corners: those of coarse faces are original vertices.
+/// Bounds the distance by that of the faces' corners: those of coarse faces are original vertices,
+/// too.
 void FaceDecision::bound_by_corners(const MeshFace& tool_face, const MeshFace& face) noexcept
 {
     double nearest_sq = kInfinity;

@@ -15,34 +15,33 @@
 namespace tactus
 {
 
-/// Decides intersection and distance of near face pairs. Single precision with proven bands comes
-/// first, exact arithmetic decides open cases that matter. Reports to the findings. Haptic thread.
-/// Valid for one query.
+/// Decides intersection and distance of near face pairs, and reports them to MeshFindings: in
+/// single precision with proven bounds first, and exactly for open cases that matter. Haptic
+/// thread. Valid for one query.
 class FaceDecision // NOLINT(cppcoreguidelines-pro-type-member-init): distances_ are written first.
 {
 public:
     FaceDecision(const MeshQuestion& question, MeshFindings& findings,
                  MeshMemory& memory) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds a pair of faces that may matter. Arguments are those of FacePairQueue::add().
+    /// Adds a pair of faces that may matter. The arguments are those of FacePairQueue::add().
     void add(const FacePair& pair, bool is_coarse, const PlacedBlock& tool,
              const BlockGeometry& block, const VertexRows& rows,
              float slack) noexcept TACTUS_NONBLOCKING;
-    /// Bounds the distance by the remembered faces, before all others. Their distance leaves little
-    /// to search.
+    /// Bounds the distance by the remembered faces, before all others; this leaves little to
+    /// search.
     void bound_by(const Triangle& tool, const Triangle& face) noexcept TACTUS_NONBLOCKING;
-    /// Takes bounds from queued pairs with a coarse face. Intersection with the other surface is
+    /// Bounds the distances of queued pairs with a coarse face. Whether such a pair may meet is
     /// decided in double precision.
     void bound_queued_coarse() noexcept TACTUS_NONBLOCKING;
-    /// Decides intersection of queued pairs: in single precision, and exactly if signs are in
-    /// doubt.
+    /// Decides whether queued pairs meet: in single precision, and exactly if signs are in doubt.
     void decide_queued() noexcept TACTUS_NONBLOCKING;
-    /// Measures candidates for nearest or contact, in double precision. The nearest come first,
-    /// which leaves the least to measure.
+    /// Measures, in double precision, the pairs that may be the nearest or contacts. The nearest
+    /// come first, which leaves the fewest to measure.
     void measure_candidates() noexcept TACTUS_NONBLOCKING;
 
-    /// Direction between the nearest faces found, from the object to the tool, not longer than 1.
-    /// Its number is 0 if none was found.
+    /// Direction between the nearest faces found so far, from the object to the tool, with a length
+    /// of at most 1. Valid unless way_number() is 0.
     [[nodiscard]] const Vec3f& way() const noexcept { return way_; }
     [[nodiscard]] std::uint32_t way_number() const noexcept { return way_number_; }
     [[nodiscard]] const Vec3f* find_way() const noexcept
@@ -57,11 +56,11 @@ private:
         Triangle triangle;
         double error_m{0.0};
     };
-    /// Exact faces to be measured unless others turn out to be nearer.
+    /// Pair of exact faces, to be measured unless others turn out to be nearer.
     struct Candidate // NOLINT(cppcoreguidelines-pro-type-member-init): written whole.
     {
         FacePair pair;
-        float gap; ///< Lower bound on their distance, in quanta.
+        float gap; ///< Lower bound on the faces' distance, in quanta of the object.
     };
     static constexpr std::size_t kMaxCandidates = 192;
     using FarthestEnds = std::array<std::size_t, kContactDirections>;
@@ -85,15 +84,16 @@ private:
     const MeshQuestion& question_;
     MeshFindings& findings_;
     MeshMemory& memory_;
-    double tool_quantum_m_; ///< Quantum of the tool in the object's frame.
+    double tool_quantum_m_; ///< Quantum of the tool's model, in metres of the object's frame.
     double quantum_m_;
-    FacePairQueue queue_; ///< Exact pairs.
+    FacePairQueue queue_; ///< Pairs of exact faces.
     FacePairQueue coarse_queue_;
-    PairDistances distances_; ///< Bounds for the queue.
+    PairDistances distances_; ///< Bounds on the distances of the queued pairs.
     StaticVector<Candidate, kMaxCandidates> candidates_;
-    SharedFeatures shared_;       ///< Features shared among measured pairs.
-    std::uint32_t way_number_{0}; ///< Number of the direction; 0 if none was found.
-    Vec3f way_{};                 ///< Direction between the nearest faces found.
+    SharedFeatures shared_; ///< Nearest features shared by measured pairs.
+    /// Number of the direction, which changes with it; 0 if none was found.
+    std::uint32_t way_number_{0};
+    Vec3f way_{}; ///< Direction of way().
 };
 
 } // namespace tactus

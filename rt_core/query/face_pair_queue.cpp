@@ -15,10 +15,10 @@ namespace tactus
 namespace
 {
 
-/// Rounding of an object's vertex and its difference from another one, as a share of the larger
-/// distance from the centre: six times 2^-24.
+/// Bound on the rounding of an object's vertex and of its difference from another one, as a share
+/// of the larger distance from the centre: six times 2^-24.
 constexpr float kVertexRounding = 0x1p-21F;
-/// Upper bound on rounding of a coordinate to single precision.
+/// Bound on the relative rounding of a coordinate to single precision.
 constexpr double kSingleRounding = 0x1p-23;
 
 } // namespace

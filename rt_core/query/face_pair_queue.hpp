@@ -15,7 +15,7 @@
 namespace tactus
 {
 
-/// Place of a face of the tool and one of the object in their trees.
+/// A face of the tool and one of the object, as lanes of blocks in their trees.
 struct FacePair
 {
     std::uint32_t tool_block{kNoNode};
@@ -40,17 +40,17 @@ public:
     }
     void clear() noexcept { count_ = 0; }
 
-    /// Adds a pair to a queue that is not full. `tool` is the tool's block. `rows` are the vertices
-    /// of the object's `block` around the centre of its box. `slack` is the rounding of the
-    /// placement, in quanta.
+    /// Adds a pair to a queue that is not full. `tool` is the tool's block, placed in the object's
+    /// frame. `rows` are the vertices of the object's `block` around the centre of its box. `slack`
+    /// is the rounding of the placement, in quanta.
     void add(const FacePair& pair, const PlacedBlock& tool, const BlockGeometry& block,
              const VertexRows& rows, float slack) noexcept TACTUS_NONBLOCKING;
-    /// Adds a pair with both faces in the object's frame, in metres.
+    /// Adds a pair whose faces are both given in the object's frame, in metres.
     void add(const FacePair& pair, const Triangle& tool, const Triangle& face,
              double quantum_m) noexcept TACTUS_NONBLOCKING;
 
 private:
-    PairRows rows_; ///< Rows of the pairs. Lanes beyond the count hold old values.
+    PairRows rows_; ///< Coordinates of the pairs. Lanes beyond the count hold old values.
     std::array<FacePair, kPairLanes> pairs_;
     std::uint32_t count_{0};
 };

@@ -17,7 +17,7 @@ namespace tactus
 namespace
 {
 
-/// Factor on the farthest kept contact's distance within which contacts are considered as ends.
+/// Factor on the distance of the farthest kept contact within which contacts may be ends.
 constexpr double kEndsAsNear = 1.1;
 
 Triangle triangle_of(const AbTree& tree, PrimId prim) noexcept
@@ -198,7 +198,8 @@ DistanceAnswer MeshFindings::answer() noexcept
     found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
     if (enough_ == 1 || is_enough())
     {
-        found.open_m = std::max(found.open_m, 0.0); // No face is nearer than one that meets.
+        // No face is nearer than one that meets, so `open_m` need not be below zero.
+        found.open_m = std::max(found.open_m, 0.0);
     }
     found.pruned_m = found.upper_m > reach_m_ ? worth_m() : kInfinity;
     found.dropped_m = kInfinity;
@@ -246,7 +247,8 @@ void MeshFindings::report_contacts(const DistanceAnswer& answer) noexcept
     {
         return;
     }
-    if (exceeds_capacity()) // Contacts found before are dropped, too.
+    // Contacts between separate faces were skipped in part, so all of them are dropped.
+    if (exceeds_capacity())
     {
         contacts_->contacts.clear();
         drop_ends();
@@ -260,29 +262,29 @@ void MeshFindings::report_contacts(const DistanceAnswer& answer) noexcept
         (answer.certified_radius_m >= question_.contact_m || answer.lower_m > question_.contact_m);
 }
 
-/// True if a coarse face may meet the other surface and the two are in reach. Other coarse faces
-/// then add nothing.
+/// True if a coarse face may meet the other surface and the two are in reach: further coarse faces
+/// change no result.
 bool MeshFindings::is_left_open() const noexcept
 {
     return open_m_ <= 0.0 && (aim_ == Aim::meeting || needs_only_meeting() ||
                               (aim_ == Aim::all && bound_m_ <= reach_m_));
 }
 
-/// True if one meeting pair is enough and some pair may meet. Contacts and distances then add
-/// nothing.
+/// True if one meeting pair is enough and some pair may meet: contacts and distances change no
+/// result.
 bool MeshFindings::needs_only_meeting() const noexcept
 {
     return aim_ == Aim::all && enough_ == 1 && question_.contact_m >= 0.0 && open_m_ <= 0.0;
 }
 
-/// Distance beyond which no contact is kept; negative if none is.
+/// Distance beyond which no contact is kept; negative if no contact is.
 double MeshFindings::kept_contact_m() const noexcept
 {
     if (aim_ != Aim::all || expects_crowd_)
     {
         return -1.0;
     }
-    // Meeting faces come before all that are apart.
+    // Contacts of meeting faces come before contacts of separate faces.
     const ContactSet& apart = contacts_->contacts;
     const std::size_t room = kMaxContacts - touching_.size();
     double farthest_m = std::min(question_.contact_m, expected_m_);
@@ -297,7 +299,7 @@ double MeshFindings::kept_contact_m() const noexcept
     return room == 0 ? -1.0 : std::min(apart[room - 1].distance_m, farthest_m);
 }
 
-/// Distance beyond which no contact counts among the ends; negative if none does.
+/// Distance beyond which contacts are neither kept nor ends; negative if no contact is.
 double MeshFindings::asked_contact_m() const noexcept
 {
     const double as_near = question_.ends != nullptr ? kEndsAsNear : 1.0;
@@ -317,8 +319,8 @@ void MeshFindings::drop_ends() const noexcept
     }
 }
 
-/// Keeps the lowest pairs: in any order until the list is full, then as a heap with the highest on
-/// top.
+/// Keeps the meeting pairs with the lowest ids: in any order until the list is full, then as a heap
+/// with the highest on top.
 void MeshFindings::keep_lowest(const MeetingFaces& faces) noexcept
 {
     if (report_.meeting.try_push_back(faces))
@@ -339,8 +341,8 @@ void MeshFindings::keep_lowest(const MeetingFaces& faces) noexcept
     }
 }
 
-/// Keeps the first meeting pairs in the order of contacts. Their contact points are computed at the
-/// end.
+/// Keeps the first meeting pairs in the order of contacts, or just one if no contacts are
+/// requested. Their contact points are computed at the end.
 void MeshFindings::keep_touching(const Meeting& meeting) noexcept
 {
     const bool are_contacts = aim_ == Aim::all && question_.contact_m >= 0.0;

@@ -17,12 +17,12 @@ namespace tactus
 /// Purpose of a search.
 enum class Aim : std::uint8_t
 {
-    all,     ///< Distance within the reach, meeting faces and contacts.
-    nearest, ///< Distance alone.
-    meeting, ///< Meeting faces alone, which needs no measuring.
+    all,     ///< The search finds the distance within the reach, meeting faces and contacts.
+    nearest, ///< The search finds the distance alone.
+    meeting, ///< The search finds meeting faces alone, which needs no measuring.
 };
 
-/// Exact faces that share a point.
+/// Two exact faces that share a point.
 struct Meeting
 {
     MeetingFaces faces;
@@ -30,83 +30,83 @@ struct Meeting
     PrimId prim{};
 };
 
-/// Order of contacts.
+/// Order of contacts: by the object's face, then the tool's.
 [[nodiscard]] bool comes_before(const MeetingFaces& a,
                                 const MeetingFaces& b) noexcept TACTUS_NONBLOCKING;
 
 [[nodiscard]] Triangle placed_triangle(const Triangle& there,
                                        const MeshPlacement& place) noexcept TACTUS_NONBLOCKING;
 
-/// Results of a query of two meshes: distances that still matter, and the final report. Lengths are
-/// in the object's frame. Haptic thread.
+/// Results of a query of two meshes: the distances that still matter during the search, and the
+/// reports. Lengths are in the object's frame. Haptic thread.
 class MeshFindings // NOLINT(cppcoreguidelines-pro-type-member-init): lists are empty.
 {
 public:
     /// `doubt_m` is twice the error law of the measuring kernels, for any two faces. `contacts` is
-    /// null if not requested. `enough` meeting pairs end the search.
+    /// null if not requested. `enough` meeting pairs end the search; above 0.
     MeshFindings(const MeshQuestion& question, Aim aim, std::uint32_t enough, double doubt_m,
                  MeshReport& report, ContactReport* contacts) noexcept TACTUS_NONBLOCKING;
 
-    /// Skips contacts that are apart: valid only if exceeds_capacity() in the end.
+    /// Skips contacts between separate faces: valid only if exceeds_capacity() is true in the end.
     void expect_crowd() noexcept { expects_crowd_ = true; }
-    /// Sets the share of the distance to prove if nothing is in reach; above 0.
+    /// Sets the share of the distance, above 0, that is to be proven if nothing is in reach.
     void prove(double share) noexcept { share_ = share; }
-    /// Leaves coarse faces out: the question's `certified_m` is all that is known of them.
+    /// Leaves coarse faces out: they count as `certified_m` of the question away.
     void leave_coarse() noexcept TACTUS_NONBLOCKING;
-    /// True if a distance beyond the reach would change nothing.
+    /// True if no distance beyond the reach is to be proven.
     [[nodiscard]] bool asks_for_reach_only() const noexcept
     {
         return aim_ == Aim::all && worth_m() <= reach_m_;
     }
-    /// Limits the search for contacts to this distance: valid if it holds enough of them.
+    /// Limits the search for contacts to `within_m`: valid only if has_expected_contacts() in the
+    /// end.
     void expect_contacts(double within_m) noexcept { expected_m_ = within_m; }
-    /// True if it does, or if something else ended the search.
+    /// True if the limit of expect_contacts() left out no contact that would be kept.
     [[nodiscard]] bool has_expected_contacts() const noexcept TACTUS_NONBLOCKING;
-    /// Upper bound on the distance of one contact more than fit; negative if all fit.
+    /// Bound on the distance of the nearest contact that did not fit; negative if all fit.
     [[nodiscard]] double farthest_contact_m() const noexcept TACTUS_NONBLOCKING;
-    /// True if meeting faces leave no capacity for other contacts.
+    /// True if meeting faces alone exceed the capacity for contacts.
     [[nodiscard]] bool exceeds_capacity() const noexcept TACTUS_NONBLOCKING;
-    /// Distance beyond which faces change nothing. Never grows.
+    /// Distance beyond which faces change no result. Never grows.
     [[nodiscard]] double worth_m() const noexcept TACTUS_NONBLOCKING;
-    /// Distance beyond which exact pairs need no measuring; negative if none does.
+    /// Distance beyond which exact pairs need no measuring; negative if no pair does.
     [[nodiscard]] double measured_m() const noexcept TACTUS_NONBLOCKING;
-    /// True if coarse faces may be near enough to matter. Once false it stays false, as the
-    /// distance that matters never grows.
+    /// True if coarse faces may be near enough to matter. Once false it stays false, as worth_m()
+    /// never grows.
     [[nodiscard]] bool needs_coarse() const noexcept TACTUS_NONBLOCKING;
-    /// Distance beyond which no pair is visited, exact or not.
+    /// Distance beyond which no pair of faces is visited.
     [[nodiscard]] double walked_m() const noexcept TACTUS_NONBLOCKING;
-    /// Distance beyond which pairs are neither the nearest nor kept contacts and could only be
-    /// ends.
+    /// Distance beyond which pairs are neither nearest nor kept contacts, and could only be ends.
     [[nodiscard]] double contact_zone_m() const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_enough() const noexcept { return found_ >= enough_; }
     [[nodiscard]] bool has_met() const noexcept { return found_ > 0; }
-    /// Upper bound on the distance of some pair, in single precision.
+    /// Upper bound on the distance of the two surfaces, in single precision.
     [[nodiscard]] double bound_m() const noexcept { return bound_m_; }
-    /// Lower bound on inexact and unvisited pairs.
+    /// Lower bound on the distance of inexact and unvisited pairs.
     [[nodiscard]] double open_m() const noexcept { return open_m_; }
 
-    /// Lowers bound_m(). False if it was as low already.
+    /// Lowers bound_m() to `upper_m`. False if it was as low already.
     [[nodiscard]] bool try_bound(double upper_m) noexcept
     {
         const bool is_nearer = upper_m < bound_m_;
         bound_m_ = is_nearer ? upper_m : bound_m_;
         return is_nearer;
     }
-    /// Records that an unvisited pair is at least this far away.
+    /// Records that an unvisited pair is at least `gap_m` away.
     void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
     void take_upper(double upper_m) noexcept TACTUS_NONBLOCKING;
     void add_apart(const MeetingFaces& faces, const Triangle& triangle,
                    const ClosestPoints& closest) noexcept TACTUS_NONBLOCKING;
     void add_meeting(const Meeting& meeting) noexcept TACTUS_NONBLOCKING;
-    /// Counts a pair that is at most `upper` apart. If contacts exceed the capacity, the search
-    /// skips those beyond all of `nearest_contacts_`.
+    /// Counts a pair that is at most `upper` quanta apart as a contact. If contacts exceed the
+    /// capacity, the search skips pairs farther than all of `nearest_contacts_`.
     void count_contact(float upper) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] DistanceAnswer answer() noexcept TACTUS_NONBLOCKING;
-    /// Reports meeting faces, sorted.
+    /// Completes the report of meeting faces, sorted.
     void report_meeting() noexcept TACTUS_NONBLOCKING;
-    /// Reports the tool's face of the nearest pair.
+    /// Reports the face of the tool in the nearest pair.
     void report_nearest(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
-    /// Reports the contacts in order, and the tool's face of the nearest pair.
+    /// Reports the contacts in order, and the face of the tool in the nearest pair.
     void report_contacts(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
 private:
@@ -132,22 +132,24 @@ private:
     double doubt_m_;
     MeshReport& report_;
     ContactReport* contacts_;
-    bool has_coarse_;                                        ///< A tree has coarse faces.
-    bool leaves_coarse_{false};                              ///< Coarse faces are left out.
-    std::uint32_t found_{0};                                 ///< Pairs that meet.
-    StaticVector<float, kMaxContacts + 1> nearest_contacts_; ///< Heap, the farthest on top.
-    double bound_m_{kInfinity};       ///< Upper bound on some pair, in single precision.
-    double open_m_{kInfinity};        ///< Lower bound on inexact and unvisited pairs.
-    double exact_lower_m_{kInfinity}; ///< Lower bound on exact pairs.
-    double upper_m_{kInfinity};       ///< Upper bound on some pair.
+    bool has_coarse_;           ///< True if one of the trees has coarse faces.
+    bool leaves_coarse_{false}; ///< True if coarse faces are left out.
+    std::uint32_t found_{0};    ///< Number of pairs that meet.
+    /// Upper bounds on the nearest contacts, in quanta; a heap, the farthest on top.
+    StaticVector<float, kMaxContacts + 1> nearest_contacts_;
+    double bound_m_{kInfinity}; ///< Upper bound on the surfaces' distance, in single precision.
+    double open_m_{kInfinity};  ///< Bound on inexact and unvisited pairs, as for open_m().
+    double exact_lower_m_{kInfinity}; ///< Lower bound on the distance of exact pairs.
+    double upper_m_{kInfinity};       ///< Upper bound on the surfaces' distance.
     StaticVector<Meeting, kMaxContacts> touching_;
     ClosestPoints nearest_; ///< Nearest exact pair.
     MeetingFaces nearest_faces_;
     bool has_nearest_{false};
     bool has_dropped_{false}; ///< True if a contact did not fit.
     bool expects_crowd_{false};
-    double share_{static_cast<double>(kProofShare)}; ///< Share to prove beyond the reach.
-    double expected_m_{kInfinity};                   ///< Expected limit of contacts.
+    /// Share of the distance to prove if nothing is in reach.
+    double share_{static_cast<double>(kProofShare)};
+    double expected_m_{kInfinity}; ///< Limit set by expect_contacts().
 };
 
 } // namespace tactus

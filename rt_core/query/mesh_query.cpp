@@ -27,36 +27,36 @@ namespace tactus
 namespace
 {
 
-/// Twice the kernel's error law, rounded up.
+/// Twice the measuring kernel's error law, in local lengths, rounded up.
 constexpr double kSpanError = 4e-15;
 
-/// Ratio of gap to bound above which blocks are also measured along the direction between them.
+/// Ratio of gap to bound above which two blocks are also measured along the direction between them.
 constexpr float kFarBlocks = 1.25F;
 
-/// Contacts are expected no farther than the last ones plus the tool's motion since. If the motion
-/// is unknown, kContactsMoved of the requested distance replaces it. The sum is multiplied by
-/// kContactsAsNear for rounding.
+/// Contacts are expected to be no farther than the last ones plus the tool's motion since. If the
+/// motion is unknown, kContactsMoved of the requested distance counts as motion. kContactsAsNear is
+/// a margin for rounding.
 constexpr double kContactsAsNear = 1.02;
 constexpr double kContactsMoved = 0.1;
 
-/// After a query that was cut, the next one requests kMuchLess of the share, though at least
-/// kLeastShare. After a query that used at most kLittle of its budget, the next one requests 1 /
-/// kLittle of the share.
+/// After a query that was cut, the next one requests kMuchLess of the share, at least kLeastShare.
+/// After a query that used at most kLittle of its budget, the next one requests 1 / kLittle of the
+/// share.
 constexpr double kMuchLess = 1.0 / 64.0;
 constexpr double kLeastShare = 0x1p-18 * static_cast<double>(kProofShare);
 constexpr double kLittle = 0.25;
-/// Below this share nothing beyond the reach is requested. Coarse faces are then left to the
-/// distance that refinement has certified.
+/// Share below which coarse faces are left to the distance that refinement has certified, and
+/// nothing beyond the reach is requested.
 constexpr double kShareOfCoarse = kLittle * static_cast<double>(kProofShare);
 
-/// True if a lane of a block is an exact face now.
+/// True if the lane of a block still is an exact face.
 bool is_exact_face(const AbTree& tree, std::uint32_t block, std::uint32_t lane) noexcept
 {
     return tree.is_block_in_use(block) && lane < kBlockFaces &&
            (tree.block(block).faces & ~tree.side(block).coarse & 1U << lane) != 0;
 }
 
-/// The remembered faces at their present place.
+/// The two remembered faces at their present place, and whether they meet.
 struct Witness
 {
     Triangle tool;
@@ -65,7 +65,7 @@ struct Witness
     bool do_meet{false};
 };
 
-/// None if one of the faces is gone or no longer exact.
+/// Returns the remembered faces; none if one of them is gone or no longer exact.
 std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair& pair,
                                     WalkBudget& budget) noexcept
 {
@@ -88,11 +88,11 @@ std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair
     return witness;
 }
 
-/// One query's search: the near pairs of blocks, and for each the pairs of faces.
+/// Search of one query: finds the near pairs of blocks, and tests their pairs of faces.
 class MeshSearch
 {
 public:
-    /// The search ends if `enough` pairs meet.
+    /// Prepares the search, which ends if `enough` pairs meet.
     MeshSearch(const MeshQuestion& question, Aim aim, std::uint32_t enough, WalkBudget& budget,
                MeshMemory& memory, MeshReport& report, ContactReport* contacts) noexcept
         : question_(question)
@@ -110,8 +110,8 @@ public:
 
     [[nodiscard]] MeshFindings& findings() noexcept { return findings_; }
 
-    /// If nothing is remembered, `object` gives a first distance bound; null if no distance is
-    /// requested.
+    /// Runs the search. If no faces are remembered, `object` gives a first bound on the distance;
+    /// null if no distance is requested.
     void run(OtherSurface* object, const std::optional<Witness>& witness) noexcept
     {
         if (question_.tool.root().is_none() || question_.object.root().is_none())
@@ -123,7 +123,7 @@ public:
         {
             bound_by(*witness);
         }
-        // A distance search needs a bound before anything can be left out.
+        // Without a bound, a search for the distance could leave nothing out.
         if (object != nullptr && findings_.bound_m() == kInfinity)
         {
             static_cast<void>(
@@ -151,16 +151,17 @@ public:
         else
         {
             const double gap_m = spheres_gap_m();
-            findings_.leave(gap_m > 0.0 ? gap_m : 0.0); // NaN: nothing is known.
+            findings_.leave(gap_m > 0.0 ? gap_m : 0.0); // A gap of NaN proves nothing.
         }
         if (!findings_.has_met() && witness && witness->do_meet)
         {
-            findings_.add_meeting(witness->meeting); // The budget was spent before.
+            // The budget was spent before these faces were tested.
+            findings_.add_meeting(witness->meeting);
         }
     }
 
 private:
-    /// Gap between the tool's sphere and the object's.
+    /// Gap between the bounding spheres of tool and object, in metres of the object's frame.
     [[nodiscard]] double spheres_gap_m() const noexcept
     {
         const Sphere tool = sphere_round(question_.tool.box());
@@ -182,7 +183,8 @@ private:
         test_remembered();
     }
 
-    /// Tests all faces of the remembered blocks: the nearest face tends to move to a neighbour.
+    /// Tests all faces of the remembered blocks first: the nearest face tends to move to a
+    /// neighbour.
     void test_remembered() noexcept
     {
         const FacePair& pair = memory_.faces;
@@ -220,7 +222,7 @@ private:
         findings_.leave(static_cast<double>(walk.end()) * quantum_m_);
     }
 
-    /// A bound in quanta, for the kernels.
+    /// Converts a bound to quanta of the object, rounded up, for the kernels.
     [[nodiscard]] float bound_quanta(double bound_m) const noexcept
     {
         const double quanta = bound_m / quantum_m_ * kRoundedUp;
@@ -228,15 +230,15 @@ private:
                                    : std::numeric_limits<float>::infinity();
     }
 
-    /// Ends the search with a spent budget, before these blocks were tested completely.
+    /// Ends the search at a pair of blocks that the spent budget left partly untested.
     void stop_at(const PairWalk::Item& item) noexcept
     {
         findings_.leave(static_cast<double>(item.gap) * quantum_m_);
         has_stopped_ = true;
     }
 
-    /// Tests all faces of two blocks and returns a lower bound on their distance. The cheapest test
-    /// comes first. The object's block is not read before the tool's faces are near its box.
+    /// Tests all faces of two blocks and returns a lower bound on their distance. Cheap tests come
+    /// first; the object's block is only read if faces of the tool are near its box.
     [[nodiscard]] float test_blocks(const PairWalk::Item& item) noexcept
     {
         FacePair pair{item.tool.index(), item.object.index()};
@@ -250,7 +252,7 @@ private:
             stop_at(item);
             return item.gap;
         }
-        // Errors are in the box, and not in the block.
+        // The object's box includes its faces' errors, its block does not.
         const float box_bound = bound_of(tool, side, takes_coarse);
         const float bound =
             takes_coarse ? (box_bound + largest_error_quanta(side)) * kSumRoundedUp : box_bound;
@@ -303,8 +305,8 @@ private:
         return item.gap;
     }
 
-    /// Lower bound on the blocks' distance along one direction, errors subtracted. 0 if it does not
-    /// exceed `box_bound`, which becomes `bound` with the errors.
+    /// Lower bound on the blocks' distance along one direction, less errors. 0 unless it exceeds
+    /// `box_bound`; `bound` is that plus the errors of the object's faces.
     [[nodiscard]] float parted_by(const PlacedBlock& tool, const PairWalk::Item& item,
                                   const BlockGeometry& block, float box_bound, float bound) noexcept
     {
@@ -320,8 +322,8 @@ private:
         return gap > bound ? (gap - (bound - box_bound)) / kSumRoundedUp : 0.0F;
     }
 
-    /// Gap along the direction between the nearest faces: by the object's box, or by all vertices
-    /// of both.
+    /// Gap of the blocks along the direction between the nearest faces: by the object's box, or by
+    /// all vertices of both.
     [[nodiscard]] float gap_along_way(const PlacedBlock& tool, const Aabb& object_box,
                                       const BlockGeometry& block, float bound) noexcept
     {
@@ -344,8 +346,8 @@ private:
                                              center, way.data());
     }
 
-    /// Gap along the direction between the two blocks, for places elsewhere that may be as near as
-    /// the nearest.
+    /// Gap of the blocks along the direction between their centres, for blocks at another place
+    /// that may be as near as the nearest.
     [[nodiscard]] float gap_along_own_way(const PlacedBlock& tool, const Aabb& object_box,
                                           const BlockGeometry& block) const noexcept
     {
@@ -356,7 +358,7 @@ private:
                                                         block.vertices, center, way.data());
     }
 
-    /// Direction from the centre of the object's box to that of the tool's; not longer than 1.
+    /// Direction from the centre of the object's box to that of the tool's box; not longer than 1.
     [[nodiscard]] static Vec3f way_between(const KernelProbe& center, const Aabb& box) noexcept
     {
         Vec3f way{};
@@ -371,7 +373,7 @@ private:
         return {way[0] * share, way[1] * share, way[2] * share};
     }
 
-    /// Distance within which face pairs of two blocks matter, in quanta, errors subtracted.
+    /// Distance within which face pairs of two blocks matter, in quanta of the object, less errors.
     [[nodiscard]] float bound_of(const PlacedBlock& tool, const BlockSide& side,
                                  bool takes_coarse) const noexcept
     {
@@ -389,8 +391,8 @@ private:
     PlacedBlocks placed_;
     MeshFindings findings_;
     FaceDecision decision_;
-    bool has_stopped_{false};   ///< True if the budget ended the search.
-    PairWalk::Item remembered_; ///< Blocks tested first.
+    bool has_stopped_{false};   ///< True if the budget ended the search early.
+    PairWalk::Item remembered_; ///< Blocks of the remembered faces, which are tested first.
 };
 
 DistanceAnswer answer_of_meeting(const Witness& witness) noexcept
@@ -407,7 +409,8 @@ DistanceAnswer answer_of_meeting(const Witness& witness) noexcept
     return answer;
 }
 
-/// Reports the remembered faces if they still meet: then there is nothing to search.
+/// Reports the remembered faces if they still meet, which makes a search unnecessary. False if they
+/// don't.
 bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexcept
 {
     if (!witness || !witness->do_meet)
@@ -419,7 +422,7 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
     return true;
 }
 
-/// try_report() with the distance.
+/// Does try_report() and sets the distance.
 [[gnu::noinline]] bool try_answer(const std::optional<Witness>& witness, DistanceAnswer& answer,
                                   MeshReport& report) noexcept
 {
@@ -440,15 +443,15 @@ struct MeshAnswers
     ContactReport& contacts;
 };
 
-/// Assumptions of a search that save half of the time and more.
+/// Assumptions that save at least half of a search's time.
 struct Guess
 {
     bool exceeds_capacity{false};
     double contacts_within_m{kInfinity};
 };
 
-/// False if the guess was wrong, which leaves the answers incomplete. Complete answers do not
-/// depend on the guess.
+/// Searches with a guess. False if the guess was wrong: the answers are then incomplete. Complete
+/// answers do not depend on the guess.
 [[gnu::noinline]] bool search_meshes(const MeshQuestion& question, const Guess& guess,
                                      OtherSurface& object, MeshMemory& memory,
                                      const std::optional<Witness>& witness,
@@ -478,7 +481,7 @@ struct Guess
     return true;
 }
 
-/// Adapts the next query's share to the part of the budget that this one used.
+/// Adapts the share of the next query to the part of the budget that this query used.
 class ShareRule
 {
 public:
@@ -510,11 +513,11 @@ private:
     }
 
     const WalkBudget& budget_;
-    std::uint32_t used_; ///< Work of the frame used before.
+    std::uint32_t used_; ///< Work of the frame before the query.
     std::uint32_t left_;
 };
 
-/// Motion since the last query, or kContactsMoved of the contact distance if unknown.
+/// Motion of the tool since the last query; kContactsMoved of the contact distance if unknown.
 double moved_m(const MeshQuestion& question) noexcept
 {
     const double motion_m = question.front != nullptr

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Block name for loose faces in a walk, which has no other block of the tool.
+/// Reference that stands for the loose faces in a walk, which then has no other block of the tool.
 constexpr TreeRef kLoose = TreeRef::to_block(0);
 
 } // namespace
@@ -64,7 +64,7 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
     bound_ = bound < kFarQuanta ? round_up_to_float(bound) : kNothingLeft;
     if (!other_.tree().is_complete())
     {
-        leave(0.0F); // Missing faces may be anywhere.
+        leave(0.0F); // Faces that did not fit into the other tree may be anywhere.
     }
     if (views_.is_beyond_kernels())
     {
@@ -79,7 +79,7 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
         go_on(*unfinished, walk);
     }
     PairWalk::Sought sought{bound_};
-    bool is_done = true; // False if the last pair was not tested completely.
+    bool is_done = true; // False if the last pair of blocks was not tested completely.
     while (!is_full())
     {
         const PairWalk::Item* near = walk.next_blocks(sought);
@@ -109,8 +109,8 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
     leave(walk.end());
 }
 
-/// Continues an unfinished search. Its proven distances shrink by the other surface's motion and by
-/// the rounding of its new place.
+/// Continues an unfinished search, if both trees are unchanged. Its proven distances shrink by the
+/// other surface's motion and by the rounding of its new place.
 void NearFaces::go_on(UnfinishedSearch& unfinished, PairWalk& walk) noexcept
 {
     if (!unfinished.left.empty() && unfinished.own_change == own_.last_change() &&
@@ -147,7 +147,8 @@ void NearFaces::keep(const PairWalk& walk, bool is_done,
     unfinished.moved_m = 0.0;
 }
 
-/// False if the budget is spent before all of these lanes were tested.
+/// Tests the faces in `lanes` against a block of the other tree; false if the budget is spent
+/// before the end.
 bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
                          std::uint32_t lanes) noexcept
 {
@@ -170,7 +171,7 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
         return true;
     }
     budget.spend(WorkCost::near_block);
-    // Errors of the other's faces are in the box, and not in the block.
+    // The other's box includes its faces' errors, its block does not.
     const float bound = (bound_ + largest_error_quanta(side)) * kSumRoundedUp;
     VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
     const std::uint8_t* corners = block.corners.front().data();
@@ -208,7 +209,8 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
     return true;
 }
 
-/// Coarse faces except those that may meet the other surface: for these no nearer face is sought.
+/// Lanes of a block's coarse faces, except those known to be possibly meeting: for these no nearer
+/// face is sought.
 std::uint32_t NearFaces::open_lanes(const PlacedBlock& own) noexcept
 {
     std::uint32_t lanes = own.coarse;
@@ -242,7 +244,7 @@ void NearFaces::measure() noexcept
     queue_.clear();
 }
 
-/// Records that faces of a pair may be as near as `lower`.
+/// Records that the own face of a pair may be as near as `lower`, in quanta.
 void NearFaces::take(const FacePair& pair, float lower) noexcept
 {
     Block* block = find_block(pair.tool_block);
@@ -265,7 +267,7 @@ void NearFaces::take(const FacePair& pair, float lower) noexcept
     block->lanes |= bit;
 }
 
-/// Null if no face of the block was near so far.
+/// Finds the entry of a block; null if none of its faces was near so far.
 NearFaces::Block* NearFaces::find_block(std::uint32_t index) noexcept
 {
     if (last_ < blocks_.size() && blocks_[last_].index == index)

@@ -14,33 +14,31 @@
 namespace tactus
 {
 
-/// Faces that are in no tree yet: lanes of a separate block.
+/// Faces that are in no tree yet, as lanes of a separate block.
 struct LooseFaces
 {
     const BlockGeometry& geometry;
-    std::uint32_t lanes{0};                     ///< Lanes in use; at least one.
-    std::array<double, kBlockFaces> errors_m{}; ///< Errors of these lanes.
+    std::uint32_t lanes{0};                     ///< Lanes in use, one bit each; at least one.
+    std::array<double, kBlockFaces> errors_m{}; ///< Errors of the faces in these lanes, in metres.
 };
 
-/// Unvisited part of a search that its budget cut, for the next search of the same two models.
-/// Proven distances hold for the boxes as they were: after a change of either tree they are of no
-/// use. 4 KiB.
+/// Unvisited part of a search that its budget cut, for the next search of the same two models. It
+/// is invalid after a change of either tree. 4 KiB.
 struct UnfinishedSearch
 {
     PairWalk::LeftPairs left; ///< Unvisited pairs; empty: nothing to continue.
     std::uint64_t own_change{0};
     std::uint64_t other_change{0};
-    double bound_m{0.0};   ///< Bound of the search: visited faces that were not found are beyond
-                           ///< it.
-    double nearest_m{0.0}; ///< Lower bound on found and left-out faces.
-    double moved_m{0.0};   ///< Motion of the other surface since.
+    double bound_m{0.0};   ///< Bound of the search: visited faces that were not found are farther.
+    double nearest_m{0.0}; ///< Lower bound on the distance of faces that were found or left out.
+    double moved_m{0.0};   ///< Motion of the other surface since the search.
 };
 
-/// Lower bounds on the distances of a model's active coarse faces from another surface, both errors
-/// subtracted. Lengths are in the model's own frame.
+/// Search for a model's active coarse faces near another surface, with lower bounds on their
+/// distances, from which both errors are subtracted. Lengths are in the model's own frame.
 ///
-/// Pairs of boxes are walked as in a query, but only parts of the model with a coarse face: near a
-/// refined surface there is little to test. The boxes of both must be right (AbTree::refit). Haptic
+/// Pairs of boxes are walked as in a query, but only in parts of the model with a coarse face: near
+/// a refined surface there is little to test. Both trees must be refitted (AbTree::refit). Haptic
 /// thread. Valid for one search. 50 KiB.
 class NearFaces // NOLINT(cppcoreguidelines-pro-type-member-init): distances_ are written first.
 {
@@ -50,20 +48,22 @@ public:
     {
         std::uint32_t index{kNoNode}; ///< Index of the block; none for loose faces.
         std::uint32_t lanes{0};
-        std::array<float, kBlockFaces> gaps{}; ///< Gaps of these lanes, in quanta of the other.
+        /// Gaps of these lanes, in quanta of the other model.
+        std::array<float, kBlockFaces> gaps{};
     };
 
-    /// `other` is the surface as seen from the model; its budget bounds the work.
+    /// `other` is the other surface as seen from the model; its budget bounds the work.
     NearFaces(const AbTree& own, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
 
     static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 
-    /// Finds faces of the model within `bound_m`: all, or until `enough` are found. With
-    /// `unfinished` the search continues from there, does not find the same faces again, and stores
-    /// its rest if the budget is spent. Null: the search begins at the roots and stores nothing.
+    /// Finds coarse faces of the model within `bound_m` of the other surface: all, or until
+    /// `enough` are found. With `unfinished` the search continues from there without finding the
+    /// same faces again, and stores its rest if the budget is spent. Null: it begins at the roots
+    /// and stores nothing.
     void find(double bound_m, std::uint32_t enough = kAll,
               UnfinishedSearch* unfinished = nullptr) noexcept TACTUS_NONBLOCKING;
-    /// Finds faces among those that will be the model's.
+    /// Finds near faces among `faces`, which a split would add to the model.
     void find(const LooseFaces& faces, double bound_m) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] std::span<const Block> blocks() const noexcept { return blocks_.view(); }
@@ -72,9 +72,9 @@ public:
         TACTUS_ASSERT((block.lanes >> lane & 1U) != 0);
         return to_m(block.gaps[lane]);
     }
-    /// Lower bound on coarse faces in no block, unless they are beyond the bound; infinity if
-    /// everything was tested. The search ends if no further block fits and a remaining face may
-    /// meet the other surface: more search would add nothing.
+    /// Lower bound on the distance of coarse faces in no block of blocks(), unless they are beyond
+    /// the bound; infinite if everything was tested. The search ends early if no further block fits
+    /// and a remaining face may meet the other surface.
     [[nodiscard]] double rest_m() const noexcept { return to_m(rest_); }
 
 private:
@@ -102,16 +102,17 @@ private:
     OtherSurface& other_;
     MeshViews views_;
     PlacedBlocks placed_;
-    double quanta_per_m_; ///< Factor from a length in the own frame to quanta of the other.
+    /// Factor from a length in the own frame, in metres, to quanta of the other model.
+    double quanta_per_m_;
     float bound_{0.0F};
     float rest_{kNothingLeft};
     std::uint32_t enough_{kAll};
     std::uint32_t found_{0}; ///< Number of faces found.
     FacePairQueue queue_;
-    std::array<float, kPairLanes> errors_; ///< Sums of both faces' errors, for the queue.
-    PairDistances distances_;              ///< Distances for the queue.
+    std::array<float, kPairLanes> errors_; ///< Sum of both faces' errors for each queued pair.
+    PairDistances distances_;              ///< Bounds on the distances of the queued pairs.
     StaticVector<Block, kMaxNearBlocks> blocks_;
-    std::uint32_t last_{0}; ///< Block that was looked up last.
+    std::uint32_t last_{0}; ///< Index in blocks_ of the block that was looked up last.
 };
 
 } // namespace tactus

@@ -16,12 +16,12 @@
 namespace tactus
 {
 
-/// Fills a local surface with the nearest of the given triangles, in their order: triangles of one
-/// block stay together. If the surface is full, the farthest eighth is dropped at once.
+/// Fills a local surface with the nearest of the given triangles. Their order is kept, so that
+/// triangles of one block stay together. If the surface is full, its farthest eighth is dropped.
 class NearestTriangles
 {
 public:
-    /// Empties the surface, which outlives this.
+    /// Empties the surface, which must outlive this object.
     explicit NearestTriangles(LocalSurface& surface) noexcept : surface_(surface)
     {
         TACTUS_ASSERT(surface.triangles.size() == surface.distances_m.size());
@@ -30,8 +30,9 @@ public:
         surface.truncated = false;
     }
 
-    /// `distance_m` is a lower bound and not negative. Takes a few nanoseconds. If the surface is
-    /// full, takes a pass over the list, once for an eighth of it.
+    /// Adds a triangle if it is near enough; `distance_m` >= 0 (asserted) is a lower bound on its
+    /// distance. Takes a few nanoseconds, or a pass over the list each time that the surface is
+    /// full.
     void add(const LocalTriangle& triangle, double distance_m) noexcept
     {
         TACTUS_ASSERT(distance_m >= 0.0);
@@ -50,11 +51,11 @@ public:
         ++surface_.count;
     }
 
-    /// Lower bound on dropped triangles.
+    /// Lower bound on the distance of dropped triangles; infinite if none was dropped.
     [[nodiscard]] double dropped_m() const noexcept { return dropped_m_; }
 
 private:
-    /// Drops the farthest eighth. Of triangles as far as the nearest dropped one, the first stay.
+    /// Drops the farthest eighth of the triangles. Among equally far triangles the first ones stay.
     void drop_farthest() noexcept
     {
         if (surface_.count == 0)

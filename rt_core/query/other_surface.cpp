@@ -66,7 +66,7 @@ double OtherSurface::upper_bound_m(const Sphere& sphere) noexcept
            sphere.radius;
 }
 
-/// Lower bound on the distance of any face less its error, at most `enough`.
+/// Lower bound on the distances of all faces less their errors, in quanta; at most `enough`.
 float OtherSurface::nearest_quanta(const KernelProbe& probe, float enough) noexcept
 {
     float nearest = enough;
@@ -159,7 +159,7 @@ void SurfaceWalk::push_children(const AbNode& node, double least_m, double bound
             continue;
         }
         stack_.push_back({node.children[child], gap, sphere});
-        // The nearest child lies on top, the others below in any order.
+        // The nearest child goes on top, the others below in any order.
         const std::size_t top = stack_.size() - 1;
         if (top > first && stack_[top].gap_m > stack_[top - 1].gap_m)
         {

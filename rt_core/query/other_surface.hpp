@@ -26,33 +26,35 @@ struct MeshPlacement
     }
     /// The inverse placement.
     [[nodiscard]] MeshPlacement inverse() const noexcept TACTUS_NONBLOCKING;
-    /// Rounding error bound of `local_to_world`, in metres there.
+    /// Bound on the rounding error of local_to_world(), in metres of the other frame.
     [[nodiscard]] double rounding_m(const Vec3& here_m) const noexcept TACTUS_NONBLOCKING;
 };
 
-/// Another model's surface, placed in a model's frame. It serves refinement near an object and
-/// queries with a mesh tool. All lengths are in the frame here. Valid for one frame. Its budget
-/// bounds all of its work. Haptic thread.
+/// Surface of another model as seen from a model's frame, for refinement near an object and for
+/// queries with a mesh tool. Lengths are in the viewing model's frame. Valid for one frame. The
+/// budget bounds all work of this object. Haptic thread.
 class OtherSurface
 {
 public:
     OtherSurface() noexcept = default;
-    /// The other's boxes must be right (AbTree::refit) at each query.
+    /// `there` places the viewing model's frame in that of `other`, whose boxes must be refitted
+    /// (AbTree::refit) at each query.
     OtherSurface(const AbTree& other, MeshPlacement there, const WalkBudget& budget) noexcept
         : other_(&other), there_(std::move(there)), budget_(budget)
     {
     }
 
-    /// Lower bound on the distance from any point of the sphere, down to minus the sphere's radius.
-    /// Beyond `enough_m` any value not below that. In single precision.
+    /// Lower bound on the distance of the surface from any point of the sphere; it may be negative,
+    /// down to minus the radius. Bounds of `enough_m` and more need not be tight. Computed in
+    /// single precision.
     [[nodiscard]] double lower_bound_m(const Sphere& sphere,
                                        double enough_m) noexcept TACTUS_NONBLOCKING;
-    /// Upper bound on the distance from some point of the sphere to the other's original surface,
-    /// if the sphere holds part of the measured set.
+    /// Upper bound on the distance of some point in the sphere from the other model's original
+    /// surface. The caller must ensure that the sphere holds a part of the measured shape.
     [[nodiscard]] double upper_bound_m(const Sphere& sphere) noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] const AbTree& tree() const noexcept { return *other_; }
-    /// Placement of the frame here in the other's.
+    /// Placement of the viewing model's frame in the other model's.
     [[nodiscard]] const MeshPlacement& placement() const noexcept { return there_; }
     [[nodiscard]] WalkBudget& budget() noexcept { return budget_; }
 
@@ -68,27 +70,28 @@ private:
     QueryMemory memory_;
 };
 
-/// Walks the blocks of a tree that are near another surface, by spheres round their boxes, nearest
-/// first. Each box costs a query of the other surface.
+/// Walk of the blocks of a tree that are near another surface, by the spheres round their boxes,
+/// nearest first. Each box costs a query of the other surface.
 class SurfaceWalk
 {
 public:
     struct Item
     {
         TreeRef ref;
-        double gap_m{0.0}; ///< Lower bound on the distance of its faces from the other surface.
-        Sphere sphere;     ///< Sphere round its box.
+        /// Lower bound on the distance of the subtree's faces from the other surface.
+        double gap_m{0.0};
+        Sphere sphere; ///< Sphere round the subtree's box.
     };
 
     SurfaceWalk(const AbTree& tree, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
 
-    /// The next block that may have faces within `bound_m`. kNoNode if there is none or the budget
-    /// is spent.
+    /// Returns the next block that may have faces within `bound_m`; kNoNode if there is none or the
+    /// budget is spent.
     [[nodiscard]] std::uint32_t next_block(double bound_m) noexcept TACTUS_NONBLOCKING;
 
     /// Sphere round the last block of next_block().
     [[nodiscard]] const Sphere& sphere() const noexcept { return sphere_; }
-    /// Parts not visited with a spent budget; empty after a complete walk.
+    /// Parts not visited because the budget was spent; empty after a complete walk.
     [[nodiscard]] std::span<const Item> left() const noexcept { return stack_.view(); }
 
 private:
@@ -101,7 +104,7 @@ private:
     Sphere sphere_;
 };
 
-/// Sphere round a box, and round a triangle; as small as possible without a search.
+/// Sphere round a box or a triangle; as small as possible without a search.
 [[nodiscard]] Sphere sphere_round(const Aabb& box) noexcept TACTUS_NONBLOCKING;
 [[nodiscard]] Sphere sphere_round(const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
 

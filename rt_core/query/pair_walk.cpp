@@ -15,11 +15,12 @@ namespace tactus
 namespace
 {
 
-/// Share of a coordinate that a split loses: 2^-48, rounded up for the split's own rounding.
+/// Bound on the share of a coordinate that is lost when a double is split into two floats: 2^-48,
+/// rounded up.
 constexpr double kSplitRounding = 0x1p-46;
 constexpr double kLeastSlack = 0x1p-40;
 
-/// Largest travel of the tool that entries count, in quanta: no model is larger, and single
+/// Largest travel of the tool for which entries are used, in quanta: no model is larger, and single
 /// precision is right to a quantum.
 constexpr double kMostTravel = 0x1p24;
 constexpr float kNothingLeft = std::numeric_limits<float>::infinity();
@@ -34,7 +35,7 @@ float least_of(const std::array<float, kNodeChildren>& gaps, std::uint32_t child
     return least;
 }
 
-/// Squared diagonal in single precision, enough for a choice of order.
+/// Squared diagonal of a box in single precision, which is enough for a choice of order.
 float diagonal_sq(const Aabb& box) noexcept
 {
     float sum = 0.0F;
@@ -46,7 +47,7 @@ float diagonal_sq(const Aabb& box) noexcept
     return sum;
 }
 
-/// The opposite direction, in the tool's frame.
+/// Returns the opposite of `way`, in the tool's frame.
 Vec3f seen_from_tool(const Vec3f& way, const BoxView& of_tool) noexcept
 {
     Vec3f turned{};
@@ -82,7 +83,8 @@ MeshViews::MeshViews(const AbTree& tool, const AbTree& object, const MeshPlaceme
 {
 }
 
-/// Rounding bound for the farthest corners, valid for all.
+/// Bound on the rounding of any placed coordinate, from that of the farthest corner; sets
+/// is_beyond_ and farthest_, too.
 float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
                           const MeshPlacement& place) noexcept
 {
@@ -91,13 +93,13 @@ float MeshViews::slack_of(const AbTree& tool, const AbTree& object,
     const double tool_reach_m = tool_sphere.center.norm() + tool_sphere.radius;
     const double object_reach_m = object_sphere.center.norm() + object_sphere.radius;
     const auto quantum_m = static_cast<double>(object.quantum_m());
-    // Distance in the other's frame, in metres of the object's, for either model.
+    // Largest distance of either model from the other's origin, in metres of the object's frame.
     const double placed_m =
         place.place.translation_m.norm() + scale_ * (tool_reach_m + place.offset_m.norm());
     farthest_ = (placed_m + object_reach_m) / quantum_m;
     // NOLINTNEXTLINE(readability-simplify-boolean-expr): the simpler one lets NaN pass.
     is_beyond_ = !(farthest_ < kFarQuanta);
-    // Placed once each way, to either of two precisions.
+    // Boxes are placed in both directions, in double precision or as two floats.
     const double share = 2.0 * kPoseRounding + kSplitRounding;
     return is_beyond_ ? 0.0F : round_up_to_float(farthest_ * share + kLeastSlack);
 }
@@ -147,11 +149,11 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
         front->object_change = object.last_change();
     }
     front->place = place;
-    front->count = 0; // Invalid until the walk has ended.
+    front->count = 0; // The front is invalid until the walk has ended.
 }
 
-/// Adds the tool's travel since the last walk. True if the last walk's entries fit the same boxes
-/// and include all that is requested.
+/// Adds the tool's travel since the last walk to the front. True if the front's entries are for the
+/// same trees and include everything requested.
 bool PairWalk::can_go_on(const MeshPlacement& place, bool exact_only) noexcept
 {
     if (front_->count == 0 || front_->tool_change != tool_.last_change() ||
@@ -169,7 +171,7 @@ bool PairWalk::can_go_on(const MeshPlacement& place, bool exact_only) noexcept
     return motion_m >= 0.0 && front_->travel < kMostTravel;
 }
 
-/// True if the subtree holds a face to visit.
+/// True if a subtree of the tool holds faces that the walk visits.
 bool PairWalk::is_wanted(TreeRef tool) const noexcept
 {
     return !coarse_only_ || (tool.is_block() ? tool_.side(tool.index()).coarse
@@ -209,7 +211,8 @@ const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
     return nullptr;
 }
 
-/// Copies entries of the last walk up to the next one to test. False if there is none.
+/// Copies entries of the last walk up to the next one to be tested, which goes on the stack. False
+/// if there is none.
 bool PairWalk::go_on() noexcept
 {
     while (read_ != PairFront::kRoom)
@@ -230,7 +233,7 @@ bool PairWalk::go_on() noexcept
     return false;
 }
 
-/// Skips the next entry with its subtree if that is now far.
+/// Skips the next entry of the last walk with its subtree, if the present walk dropped it as far.
 bool PairWalk::skip_dropped() noexcept
 {
     const std::uint32_t depth = front_->entries[read_].depth;
@@ -402,7 +405,7 @@ void PairWalk::open(const Item& item, const Sought& sought) noexcept
         stack_.push_back(opens_tool
                              ? Item{ref, item.object, box, item.object_box, gap, depth, number}
                              : Item{item.tool, ref, item.tool_box, box, gap, depth, number});
-        // The nearest child lies on top, the others below in any order.
+        // The nearest child goes on top, the others below in any order.
         const std::size_t top = stack_.size() - 1;
         if (top > first && stack_[top].gap > stack_[top - 1].gap)
         {

@@ -11,7 +11,7 @@
 namespace tactus
 {
 
-/// Views of two models' boxes in each other's frames. Lengths are quanta of the object.
+/// Views of two models' boxes in each other's frames. Lengths are in quanta of the object.
 class MeshViews
 {
 public:
@@ -23,9 +23,9 @@ public:
     [[nodiscard]] const BoxView& of_tool() const noexcept { return of_tool_; }
     [[nodiscard]] const BoxView& of_object() const noexcept { return of_object_; }
     [[nodiscard]] double scale() const noexcept { return scale_; }
-    /// Rounding of a coordinate by placement and single precision, beyond a share of it.
+    /// Bound on the rounding of a coordinate by placement and single precision.
     [[nodiscard]] float slack() const noexcept { return slack_; }
-    /// Upper bound on the coordinates' distance from the object's origin.
+    /// Upper bound on the distance of any placed coordinate from the object's origin.
     [[nodiscard]] double farthest() const noexcept { return farthest_; }
 
 private:
@@ -40,11 +40,11 @@ private:
     BoxView of_object_;
 };
 
-/// A depth-first walk of the pairs of blocks of two trees that may be near. The larger box of a
-/// pair is opened, and its eight children are measured against the other at once. The nearest pair
-/// is entered first. With a front the walk continues from the end of the last one and opens only
-/// pairs that have come near since. Haptic thread. Takes about 50 ns for each opened node, 3 ns for
-/// each unchanged pair. 25 KiB.
+/// Depth-first walk of the pairs of blocks of two trees that may be near each other. The larger box
+/// of a pair is opened, and its eight children are measured against the other box at once. The
+/// nearest pair is entered first. With a front the walk continues from the last one's end and opens
+/// only pairs that have come near since. Haptic thread. Takes about 50 ns for each opened node, 3
+/// ns for each unchanged pair. 25 KiB.
 class PairWalk
 {
 public:
@@ -54,52 +54,53 @@ public:
         TreeRef object;
         Aabb tool_box; ///< Box in the tool's frame.
         Aabb object_box;
-        float gap{0.0F}; ///< Lower bound on the distance, errors subtracted.
+        float gap{0.0F}; ///< Lower bound on the boxes' distance, less their errors.
         std::uint8_t depth{0};
-        std::uint8_t child{0};   ///< Index in the node that was opened.
-        std::uint8_t entered{0}; ///< Children with entries in the front; `gap` is that of the
-                                 ///< others.
+        std::uint8_t child{0}; ///< Index of the opened box in its node.
+        /// Children with entries in the front, one bit each; `gap` is that of the other children.
+        std::uint8_t entered{0};
     };
 
-    /// Start of the walk in the tool.
+    /// Part of the tool at which a walk starts.
     struct Start
     {
-        TreeRef tool; ///< Root of the walk. A block's contents are not read, so it need not be in a
-                      ///< tree.
-        Aabb box;     ///< Box round the start, errors added.
+        /// Root of the walk. A block's contents are not read, so it need not be in a tree.
+        TreeRef tool;
+        Aabb box;                ///< Box round the part, with errors added.
         bool coarse_only{false}; ///< True if exact subtrees are left out.
     };
 
     /// Parameters of the next step.
     struct Sought
     {
-        float bound{0.0F}; ///< Distance in quanta within which faces of two blocks matter. Never
-                           ///< grows.
-        /// Further direction to measure along, not longer than 1, from the object to the tool;
-        /// null: unknown.
+        /// Distance in quanta within which faces of two blocks matter. Must never grow.
+        float bound{0.0F};
+        /// Further direction to measure along, from the object to the tool, not longer than 1;
+        /// null: none.
         const Vec3f* way{nullptr};
         /// True if subtrees without an exact face are left out, in both trees. Once true, it stays
         /// true.
         bool exact_only{false};
-        TreeRef settled{}; ///< Block of the tool for which the search is over.
+        /// Block of the tool for which the search is over; its pairs are skipped.
+        TreeRef settled{};
     };
 
-    /// Both trees' boxes must be right (AbTree::refit). `views` must not be beyond the kernels.
+    /// Both trees must be refitted (AbTree::refit). `views` must not be beyond the kernels.
     PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views, WalkBudget& budget,
              const Start& start) noexcept TACTUS_NONBLOCKING;
-    /// Walks the whole tool. `front` must be that of the same two trees; null: none. `place` is the
-    /// placement of the views, `exact_only` the value for the first step.
+    /// Walk of the whole tool. `front` is that of the same two trees; null: none. `place` is the
+    /// placement that `views` was made with, `exact_only` the value for the first step.
     PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views, WalkBudget& budget,
              PairFront* front, const MeshPlacement& place,
              bool exact_only) noexcept TACTUS_NONBLOCKING;
 
-    /// The next pair of blocks; null if there is none or the budget is spent. Valid until the next
-    /// call.
+    /// Returns the next pair of blocks, valid until the next call; null if there is none or the
+    /// budget is spent.
     [[nodiscard]] const Item* next_blocks(const Sought& sought) noexcept TACTUS_NONBLOCKING;
-    /// Records a lower bound on the distance of the last pair of next_blocks(), errors subtracted.
+    /// Records a lower bound on the distance of the last pair of next_blocks(), less errors.
     void settle(float gap) noexcept TACTUS_NONBLOCKING;
 
-    /// A pair that a walk of the same boxes had not visited.
+    /// Pair that an earlier walk of the same boxes had not visited.
     struct Left
     {
         TreeRef tool;
@@ -108,17 +109,19 @@ public:
     };
     static constexpr std::size_t kMostLeft = std::size_t{2} * kTreeStack;
     using LeftPairs = StaticVector<Left, kMostLeft>;
-    /// Starts the walk with these pairs instead, which may have come nearer by `travel`.
+    /// Starts the walk with `pairs` instead of the roots; the pairs may have come nearer by
+    /// `travel`.
     void go_on_with(const LeftPairs& pairs, double travel) noexcept TACTUS_NONBLOCKING;
-    /// Stores the unvisited pairs, and the last pair of next_blocks() if it is not done.
+    /// Stores the unvisited pairs in `pairs`. `is_done` is false if the last pair of next_blocks()
+    /// is among them.
     void keep_left(bool is_done, LeftPairs& pairs) const noexcept TACTUS_NONBLOCKING;
 
-    /// Ends the walk at any point. Returns a lower bound on the unvisited pairs' distance, infinity
-    /// after a complete walk.
+    /// Ends the walk at any point. Returns a lower bound on the distance of unvisited pairs;
+    /// infinite after a complete walk.
     [[nodiscard]] float end() noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// A box of the tool, placed in the object's frame.
+    /// Box of the tool, placed in the object's frame.
     struct Seen // NOLINT(cppcoreguidelines-pro-type-member-init): a box comes with its ref.
     {
         TreeRef ref;
@@ -145,17 +148,19 @@ private:
     WalkBudget& budget_;
     bool coarse_only_; ///< True if exact subtrees of the tool are left out.
     Item current_;
-    std::array<Seen, kSeen> seen_; ///< Recently used boxes, at their index modulo kSeen.
+    /// Recently placed boxes of the tool, each at its reference modulo kSeen.
+    std::array<Seen, kSeen> seen_;
     StaticVector<Item, kMostLeft> stack_;
-    PairFront* front_{nullptr}; ///< Null if none is kept.
+    PairFront* front_{nullptr}; ///< Front that this walk keeps; null: none.
     // Entries of the last walk lie at the front's end and are read from there. Entries of this walk
     // are written from its beginning.
     std::uint32_t read_{PairFront::kRoom};
     std::uint32_t written_{0};
-    bool has_overflowed_{false}; ///< True if nothing more is written; the next walk then starts at
-                                 ///< the roots.
-    float limit_{0.0F};          ///< Entries up to this value are tested again.
-    std::array<std::uint8_t, kDepths> dropped_{}; ///< Children at each depth that are now far.
+    /// True if the front is full: nothing more is written, and the next walk starts at the roots.
+    bool has_overflowed_{false};
+    float limit_{0.0F}; ///< Largest `until` of entries that are tested again.
+    /// Children, one bit each, that the present walk dropped as far at each depth.
+    std::array<std::uint8_t, kDepths> dropped_{};
 };
 
 } // namespace tactus

@@ -17,7 +17,8 @@ namespace tactus
 namespace
 {
 
-/// Rounding of a vertex rotated in single precision, as a share of its distance from the centre.
+/// Bound on the rounding of a vertex rotated in single precision, as a share of its distance from
+/// the centre.
 constexpr float kTurnRounding = 0x1p-21F;
 
 } // namespace
@@ -104,7 +105,7 @@ void PlacedBlocks::put_loose(const BlockGeometry& faces, std::uint32_t coarse,
     }
 }
 
-/// Writes everything but the index and the errors of the faces.
+/// Places a block; sets all but the index and the faces' errors.
 void PlacedBlocks::put(const BlockGeometry& block, PlacedBlock& placed) const noexcept
 {
     const Aabb own =
@@ -114,7 +115,7 @@ void PlacedBlocks::put(const BlockGeometry& block, PlacedBlock& placed) const no
     std::ranges::fill(placed.rows.error, 0.0F);
     placed.vertices = block.vertices;
     placed.faces = block.faces;
-    // Rows are rotated round the centre in single precision, which is rarely inexact.
+    // Vertices are rotated round the centre in single precision; `off` bounds the rounding.
     const double units_per_m = place_.place.scale / object_quantum_m();
     const Vec3 middle = 0.5 * (to_vec3(own.low) + to_vec3(own.high));
     std::array<float, 3> from{};

@@ -24,7 +24,7 @@ namespace tactus
              std::abs(point_m.z()) < limit_m);
 }
 
-/// A probe at `point_m` in the model's frame, which is not is_beyond_kernels().
+/// Makes a probe at `point_m` in the model's frame, which must not be beyond the kernels.
 [[nodiscard]] inline KernelProbe make_probe(const Vec3& point_m, float quantum_m) noexcept
 {
     KernelProbe probe{};

@@ -11,11 +11,11 @@
 namespace tactus
 {
 
-/// Share of the best distance that is proven if no exact face is in reach.
+/// Share of the distance that is proven if no exact face is in reach.
 enum class ProofShare : std::uint8_t
 {
-    most, ///< kProofShare: the answer stays valid while the tool moves by less.
-    all,  ///< The nearest face is found however far it is.
+    most, ///< Share kProofShare: the answer stays valid while the tool moves by less.
+    all,  ///< Whole distance: the nearest face is found however far it is.
 };
 inline constexpr float kProofShare = 0.9F;
 
@@ -25,8 +25,8 @@ inline constexpr float kProofShare = 0.9F;
 }
 
 /// Answers the distance question for a point and collects the triangles of the surface within
-/// `reach_m` of it, in one traversal of the tree. Faces whose error is at most `tolerance` count as
-/// the surface, as exact ones do (code 0). Their error is subtracted from L.
+/// `reach_m` of it, in one traversal of the tree. Faces with an error up to `tolerance` count as
+/// the surface, like exact ones, and their error is subtracted from L; 0: exact faces only.
 ///
 /// L is the least of (distance - error) over active faces. U is the least of the exact faces'
 /// distances and the distances to coarse corners (which are original vertices). Both include the
@@ -40,8 +40,8 @@ void gather_surface(const AbTree& tree, const Vec3& center_m, double reach_m, Qu
                     WalkBudget& budget, LocalSurface& surface, ProofShare share = ProofShare::most,
                     ErrorCode tolerance = 0) noexcept TACTUS_NONBLOCKING;
 
-/// Answers the distance question alone, within `band_m` (infinity for no band): beyond it L is the
-/// band and U is infinite.
+/// Answers the distance question alone, within `band_m`: for a farther surface L is `band_m` and U
+/// is infinite. An infinite `band_m` sets no limit.
 [[nodiscard]] DistanceAnswer query_distance(const AbTree& tree, const Vec3& center_m, double band_m,
                                             QueryMemory& memory,
                                             WalkBudget& budget) noexcept TACTUS_NONBLOCKING;

@@ -19,8 +19,8 @@
 namespace tactus
 {
 
-/// Allowance of one more traversal in a frame that has `used` work; `each` is one traversal's
-/// allowance.
+/// Allowance of one more traversal in a frame whose traversals have used `used` nodes or triangles;
+/// `each` is the allowance of one traversal.
 [[nodiscard]] constexpr std::uint32_t walk_left(std::uint32_t each, std::uint32_t used) noexcept
 {
     const std::uint64_t all = std::uint64_t{kFrameWalks} * each;
@@ -28,16 +28,15 @@ namespace tactus
         std::min<std::uint64_t>(each, all - std::min<std::uint64_t>(all, used)));
 }
 
-/// A traversal's allowance and use. When it is spent the traversal stops.
+/// Allowance and use of one traversal, which stops when the allowance is spent.
 struct WalkBudget
 {
     std::uint32_t nodes{0};     ///< Allowance of nodes and blocks.
     std::uint32_t triangles{0}; ///< Allowance of triangles.
     std::uint32_t nodes_visited{0};
     std::uint32_t triangles_tested{0};
-    bool is_spent{false};       ///< True if a request was refused.
-    WorkBudget* frame{nullptr}; ///< Budget of the frame, also charged; null if nothing else bounds
-                                ///< the walk.
+    bool is_spent{false};       ///< True if a step was refused for lack of allowance.
+    WorkBudget* frame{nullptr}; ///< Budget of the frame, which is charged as well; null: none.
 
     [[nodiscard]] bool take_node(std::uint32_t cost = WorkCost::node) noexcept
     {
@@ -54,7 +53,7 @@ struct WalkBudget
     {
         return nodes_visited > nodes / 2 || triangles_tested > triangles / 2;
     }
-    /// Takes as many of `count` as are left.
+    /// Takes up to `count` nodes; returns the number taken.
     [[nodiscard]] std::uint32_t take_nodes(std::uint32_t count) noexcept
     {
         TACTUS_ASSERT(nodes_visited <= nodes);
@@ -76,7 +75,7 @@ struct WalkBudget
         triangles_tested += count;
         return true;
     }
-    /// Charges work that is done in any case.
+    /// Charges the frame for work that is done in any case.
     void spend(std::uint32_t cost) const noexcept
     {
         if (frame != nullptr)
@@ -92,7 +91,7 @@ private:
     }
 };
 
-/// Lower bounds on the distances from the probe to the faces in `lanes` alone, in quanta.
+/// Computes lower bounds on the distances from the probe to the faces in `lanes`, in quanta.
 inline void bound_faces(const Kernels& kernels, const BlockGeometry& block, std::uint32_t lanes,
                         const KernelProbe& probe, FaceBounds& bounds) noexcept
 {
@@ -102,15 +101,15 @@ inline void bound_faces(const Kernels& kernels, const BlockGeometry& block, std:
                                           unlimited, bounds));
 }
 
-/// An unvisited subtree and a lower bound on its distance, in quanta.
+/// Unvisited subtree and a lower bound on its distance, in quanta.
 struct WalkItem
 {
     TreeRef ref;
     float gap{0.0F};
 };
 
-/// A depth-first traversal of the blocks near a point or, by its KernelBox, near a box. It works on
-/// a BasicAbTree of any volume with a gap to the probe. The nearest child is entered first.
+/// Depth-first traversal of the blocks near a point, or near a box given as a KernelBox. `Tree` is
+/// a BasicAbTree of any bounding volume. The nearest child is entered first.
 template <typename Tree, typename Probe>
 class TreeWalk
 {
@@ -124,8 +123,8 @@ public:
         }
     }
 
-    /// The next block whose box may hold a face within `bound` quanta. kNoNode if there is none or
-    /// the budget is spent. With `coarse_only`, exact subtrees are left out.
+    /// Returns the next block whose box may hold a face within `bound` quanta; kNoNode if there is
+    /// none or the budget is spent. With `coarse_only`, subtrees of exact faces are left out.
     [[nodiscard]] std::uint32_t next_block(float bound, bool coarse_only) noexcept
     {
         while (!stack_.empty())
@@ -150,8 +149,8 @@ public:
         return kNoNode;
     }
 
-    /// Parts not visited with a spent budget; empty after a complete traversal. Each item's gap is
-    /// a lower bound for everything in it.
+    /// Parts not visited because the budget was spent; empty after a complete traversal. Each gap
+    /// is a lower bound for all of the part.
     [[nodiscard]] std::span<const WalkItem> left() const noexcept { return stack_.view(); }
 
 private:

@@ -10,22 +10,23 @@
 #include <array>
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// Slot of an active face in the pool of all models: dense and reused. The AB-Tree knows the face
-/// by it. Valid only until the next frame; FaceId is the lasting name.
+/// Index of an active face in the pool of all models, and its name in the AB-Tree. Indices are
+/// reused: one is valid only until the next frame. FaceId is the lasting name.
 using PrimId = StrongId<struct PrimTag>;
 
-/// A face that splits or merges of this frame have changed, in its present state; the forest passes
-/// it to the tree. Several changes of one face in a frame become one.
+/// Present state of a face that splits or merges of this frame have changed, for the AB-Tree.
+/// Several changes of one face become one record.
 struct ChangedFace
 {
     PrimId prim{};
-    FaceId face{};           ///< None: the slot holds no face any more.
-    std::uint32_t bucket{0}; ///< Upper part of the face's path in the tree; constant for a face.
-    ErrorCode error{0};      ///< 0: the face is exact.
+    FaceId face{}; ///< Lasting id of the face; none if the face is no longer active.
+    /// Upper part of the face's path in the AB-Tree; never changes for a face.
+    std::uint32_t bucket{0};
+    ErrorCode error{0}; ///< Code of the face's error; 0: exact.
     std::array<Vec3f, 3> corners_m{};
 };
 

@@ -11,49 +11,51 @@
 #include <cstddef>
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// A face within a tool's radius of its core, or of one of its faces. The owner of the record
-/// defines lengths and frame.
+/// Contact of a tool with a face of an object: the face is within the radius of the core, or of a
+/// face of a mesh tool. Frame and unit are those of the structure that holds the contact.
 struct Contact
 {
     FaceId face{};
     TriangleFeature feature{TriangleFeature::interior}; ///< Nearest feature of the face.
-    double distance_m{0.0};                             ///< Distance from the core.
+    double distance_m{0.0};                             ///< Distance of the face from the core.
     Vec3 on_tool_m{0.0, 0.0, 0.0};                      ///< Nearest point of the core.
     Vec3 on_surface_m{0.0, 0.0, 0.0};
-    /// Unit length, from the surface to the core; where they meet, the face's own normal. Zero if
-    /// that face has no area.
+    /// Unit vector from the surface to the core. If the two meet, the normal of the face, or zero
+    /// for a face without area.
     Vec3 normal{0.0, 0.0, 0.0};
-    FaceId tool_face{}; ///< The tool's face, if the tool is a mesh.
+    FaceId tool_face{}; ///< Face of a mesh tool; none for other tools.
 };
 
-/// Nearest first; among equals lower ids of the object's faces first, then lower ids of the tool's.
+/// Contacts, nearest first. Equally near ones are in order of the object's face ids, then of the
+/// tool's face ids.
 using ContactSet = StaticVector<Contact, kMaxContacts>;
 
-/// A group of faces with similar normals: each lies behind a plane, with the core in front of it at
-/// `distance_m` or more. Their planes' normals are within `spread` of `normal`.
+/// Group of faces with similar normals. Each face lies behind a plane of its own, and the core is
+/// at least `distance_m` in front of that plane.
 struct ContactSlab
 {
     Vec3 normal{0.0, 0.0, 0.0}; ///< Unit length, from the surface to the core.
     double distance_m{0.0};
-    double spread{0.0}; ///< Length of the difference of two unit vectors.
+    /// Largest length of the difference between `normal` and the unit normal of a plane.
+    double spread{0.0};
 };
-/// Slabs of one pair, 40 B each: enough for six sides in steps of 50 degrees. If there are more
-/// kinds of faces, some share a slab, whose spread grows.
+/// Largest number of slabs of one pair, 40 B each. Further faces join the slab with the most
+/// similar normal, whose spread grows.
 inline constexpr std::size_t kMaxSlabs = 16;
 
-/// Directions in which the farthest contacts are kept: along axes, and between two or three of
-/// them.
+/// Number of directions in which the farthest contact is kept: 6 along the axes, 12 between two
+/// axes, 8 between three.
 inline constexpr std::size_t kContactDirections = 26;
 
-/// The farthest contact in each direction, so that a rigid tool that lies on hundreds of faces is
-/// held at the ends of its support. Contacts that would touch after a rotation by a tenth count as
-/// well: a contact counts as nearer to the middle by ten times its distance from the core. If the
-/// tool is a mesh, one more pair of faces is measured in each direction: the one that might count
-/// as the farthest.
+/// Farthest contact in each direction, so that a rigid tool on hundreds of faces is held at the
+/// ends of its support. The reach of a contact is its height along the direction, less ten times
+/// its distance from the core. So contacts count that would touch after a rotation by a tenth of a
+/// radian. A mesh tool measures at most one pair of faces for each direction, beyond the contacts
+/// that it keeps.
 struct ContactEnds
 {
     std::array<Contact, kContactDirections> contacts{};
@@ -61,14 +63,14 @@ struct ContactEnds
     bool is_empty{true};
 };
 
-/// Possible contacts of a tool with force and torque, for the force stage. 10 KiB.
+/// Possible contacts of a rigid tool with one object, for the force stage. 10 KiB.
 struct TouchReport
 {
-    ContactSet nearest;       ///< The nearest point of each face.
-    ContactSet corners;       ///< Corners of a convex core, over a face.
-    ContactEnds ends;         ///< Ends of those and of all that did not fit.
-    bool is_truncated{false}; ///< There were more.
-    /// Slabs of all faces nearer than `covered_m`, if they are exact.
+    ContactSet nearest;       ///< Contacts at the nearest point of each face.
+    ContactSet corners;       ///< Contacts of corners of the core that are over a face.
+    ContactEnds ends;         ///< Farthest contacts of all, including those that did not fit above.
+    bool is_truncated{false}; ///< True if some contacts did not fit.
+    /// Slabs that hold all faces nearer than `covered_m`, if these faces are exact.
     StaticVector<ContactSlab, kMaxSlabs> slabs;
     double covered_m{0.0};
 
@@ -92,13 +94,14 @@ enum class Side : std::uint8_t
     inside,
 };
 
-/// Contacts of one pair, for a tool that asks for them. In a PairOutput: world frame, metres. 3
-/// KiB.
+/// Contacts of one pair, for a tool that wants them (ToolSpec::wants_contacts). World frame and
+/// metres in a PairOutput. 3 KiB.
 struct ContactReport
 {
     ContactSet contacts;
-    bool is_complete{false}; ///< No contact was left out, and none may exist unseen.
-    /// Faces for which libccd's answer contradicts the proof; only convex bodies use libccd.
+    bool is_complete{false}; ///< True if the report is proven to hold every contact.
+    /// Number of faces for which libccd contradicts the proven bounds; 0 unless the core is a
+    /// convex body.
     std::uint32_t overruled{0};
     /// Normal of the surface at the nearest point: a face's own, the mean of an edge's faces, or
     /// that of a vertex's faces weighted by their angles. Unit length; zero if unknown.

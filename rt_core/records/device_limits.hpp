@@ -2,17 +2,17 @@
 // Copyright the Tactus authors.
 #pragma once
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// Rotational properties and limits of a device, about the tool's point: DeviceLimits for angles.
-/// The default is a device without rotation. All values are finite and not negative. A device that
-/// produces torques measures its rotation, and its inertia, slew and stiffness are above zero.
+/// Rotational properties and limits of a device about the tool's position: DeviceLimits for angles.
+/// All values must be finite and not negative. If torque_max_nm > 0, is_measured must be true, and
+/// inertia, slew and stiffness must be above zero. The default is a device without rotation.
 struct RotationLimits
 {
     bool is_measured{false}; ///< Samples contain a rotation.
-    /// Norm. 0: the device produces no torque; the values below describe it all the same.
+    /// Largest norm of the torque. 0: the device produces none, but the values below still hold.
     double torque_max_nm{0.0};
     double inertia_kg_m2{0.0}; ///< Moving inertia about any axis, without the user's hand.
     double damping_nm_s_per_rad{0.0};
@@ -42,9 +42,9 @@ struct DeviceLimits
     /// Delay from the reading of a position to the force that it causes, in addition to the period
     /// for which a force is held: computing time, wires, amplifier.
     double delay_s{0.0};
-    double force_max_n{8.0};              ///< Norm.
+    double force_max_n{8.0};              ///< Largest norm of the force.
     double slew_max_n_per_s{20'000.0};    ///< Largest growth of the force's norm.
-    double stiffness_max_n_per_m{3000.0}; ///< The maker's limit for any wall at any rate.
+    double stiffness_max_n_per_m{3000.0}; ///< Limit of the device's maker for any wall and rate.
     /// Largest damping that the passivity controller may add, in N s/m.
     double added_damping_max_n_s_per_m{5.0};
     RotationLimits rotation{};

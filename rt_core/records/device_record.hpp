@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -24,14 +24,15 @@ struct DeviceRecord
 {
     bool connected{true};
     bool deadman_held{true};
-    /// Device pose while a clutch separates tool and device; ToolState then has the tool's pose.
-    std::optional<DevicePose> hand;
+    /// Device pose while a clutch separates tool and device. If empty, ToolState has the device
+    /// pose.
+    std::optional<DevicePose> pose;
     std::optional<Vec3> velocity_m_per_s;
     std::optional<Vec3> angular_velocity_rad_per_s;
     std::uint32_t buttons{0};
     std::optional<double> gripper_m;
     bool measures_rotation{false}; ///< False: the ToolState's rotation is not the device's.
-    /// Force sent to the device, like the values below; without the payload's.
+    /// Force, torque and gripper force sent to the device, without payload compensation.
     Vec3 sent_n{0.0, 0.0, 0.0};
     Vec3 sent_nm{0.0, 0.0, 0.0};
     double sent_gripper_n{0.0};

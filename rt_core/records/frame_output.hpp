@@ -14,49 +14,48 @@
 #include <cstdint>
 #include <span>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
 /// Results of one tool. World frame, SI.
 ///
-/// Force and torque are those of the proxy's spring even with faults: ForceFader fades them for the
-/// faults of faults_of().
+/// Force and torque are those of the proxy's spring, even with a fault. ForceFader fades them for
+/// each fault of faults_of().
 struct ToolOutput
 {
     Vec3 force_n{0.0, 0.0, 0.0};
-    Vec3 proxy_m{0.0, 0.0, 0.0};           ///< Centre of the tool that the surface allows.
-    Vec3 torque_nm{0.0, 0.0, 0.0};         ///< About the device's position. Zero for a sphere.
-    Mat3 proxy_rotation{Mat3::Identity()}; ///< Rotation of the tool's frame; for a sphere the
-                                           ///< device's.
+    /// Position of the proxy: the tool's origin where surfaces allow it.
+    Vec3 proxy_m{0.0, 0.0, 0.0};
+    Vec3 torque_nm{0.0, 0.0, 0.0}; ///< Torque about the device's position; zero for a sphere.
+    Mat3 proxy_rotation{Mat3::Identity()}; ///< Rotation of the proxy; for a sphere the device's.
     /// Stiffness of the spring that produces the force; 0 without contact.
     double stiffness_n_per_m{0.0};
-    /// Distance by which the proxy is behind: its path to the goal, along the surface in contact; 0
-    /// at rest.
+    /// Path that the proxy still has to the goal, along the surface in contact; 0 at rest.
     double lag_m{0.0};
     bool in_contact{false};
     bool halted{false};           ///< The proxy waits for data and is halted.
     bool over_constrained{false}; ///< Objects leave the tool no room.
     /// Data-limited: the proxy reached the end of the known surface before its goal.
     bool data_limited{false};
-    /// The proxy is still moving: it reached the end of the known surface or of a frame's steps.
+    /// The proxy would move on: it reached the end of the known surface or of a frame's steps.
     bool under_way{false};
-    bool cut_short{false}; ///< The proxy is still moving: the frame's checks were used up.
-    /// Capacity exceeded: more contacts than limits allow; force and torque may lack some.
+    bool cut_short{false}; ///< The proxy would move on: the frame's checks were used up.
+    /// More contacts than limits allow: force and torque may lack some.
     bool capacity_exceeded{false};
     bool lost_object{false}; ///< An object near the touching tool was removed or jumped.
     /// The tool was removed (SceneChangeKind::tool_goes); all other values are defaults.
     bool is_gone{false};
-    /// Largest displacement, since the last frame, of a point of an object within the tool's reach
-    /// as the frame believes it, and the largest rotation angle of one of these objects. >= 0.
+    /// Largest displacement since the last frame of points of an object within the tool's reach,
+    /// and largest rotation angle of such an object. >= 0.
     double object_way_m{0.0};
-    double object_turn_rad{0.0};
-    /// Displacement and rotation vector by which objects carried the proxy in this frame. Work of
-    /// the force along it is done by those who move the objects, not by the wall.
+    double object_rotation_rad{0.0};
+    /// Displacement and rotation vector by which moving objects carried the proxy in this frame.
+    /// The force's work along them is done by the movers of the objects, not by the wall.
     Vec3 carried_m{0.0, 0.0, 0.0};
     Vec3 carried_rad{0.0, 0.0, 0.0};
-    /// Proven distance of the tool's core from every object without a PairOutput, for the proxy at
-    /// the start of the frame; infinite if there is no such object.
+    /// Proven distance of the core, with the proxy at its place at the start of the frame, from all
+    /// objects without a PairOutput. Infinite if there is no such object.
     double clear_m{kInfinity};
     FrameFault sample_fault{FrameFault::none}; ///< Fault of the device's samples (SampleWatch).
 
@@ -73,8 +72,8 @@ struct ToolOutput
            (output.lost_object ? FrameFault::object_lost : FrameFault::none);
 }
 
-/// Faults for which a tool's force must fade. A proxy that waits for data without a force has
-/// nothing to fade; an over-constrained one will have a force as soon as it touches.
+/// Faults for which a tool's force must fade. A halted proxy without contact has no force to fade;
+/// an over-constrained one will have a force as soon as it touches.
 [[nodiscard]] constexpr FrameFault faults_of(const ToolOutput& output) noexcept
 {
     const bool is_held = output.halted && output.in_contact;
@@ -83,32 +82,35 @@ struct ToolOutput
            (output.over_constrained ? FrameFault::proxy_over_constrained : FrameFault::none);
 }
 
-/// Results of one pair of tool and object. World frame, metres: the model's distances times the
-/// scale.
+/// Results of one pair of tool and object. World frame and metres: distances of the model's frame
+/// times the object's scale.
 struct PairOutput
 {
     std::uint32_t tool{0};
     std::uint32_t object{0};
     AnswerKind kind{AnswerKind::bounded};
-    /// Place of the tool that the answers are for: at the start of the frame, or of its last step
-    /// that had work left for this pair. Pairs of one tool may differ.
+    /// Position of the tool for which the answer holds: at the start of the frame, or of its last
+    /// step with work left for this pair. Pairs of one tool may differ.
     Vec3 tool_m{0.0, 0.0, 0.0};
-    Mat3 tool_rotation{Mat3::Identity()}; ///< The tool's rotation there.
-    /// Point of the tool's core, there, nearest to the surface, or the core's centre if unknown.
+    Mat3 tool_rotation{Mat3::Identity()}; ///< Rotation of the tool at tool_m.
+    /// Point of the core at tool_m nearest to the surface; the core's centre if unknown.
     Vec3 point_m{0.0, 0.0, 0.0};
-    double lower_m{0.0}; ///< Distance from the core, >= 0, without the tool's radius.
-    double upper_m{0.0}; ///< Distance from the core; infinite if nothing is known yet.
+    double lower_m{0.0}; ///< L: lower bound on the distance from the core, >= 0.
+    double upper_m{0.0}; ///< U: upper bound on the distance from the core; infinite if unknown.
     /// All original faces within this distance of the core are active and exact, or represented by
     /// faces with an error of at most tolerated_m.
     double certified_radius_m{0.0};
-    double tolerated_m{0.0};             ///< 0 if all faces in reach are exact.
+    /// Largest error of a face that counts as the surface; 0: all are exact.
+    double tolerated_m{0.0};
     FaceId nearest_face{};               ///< None if no surface is in reach.
     Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Point of nearest_face; undefined without one.
-    bool skipped{false};                 ///< Derived from the last distance and the motion since.
-    TriangleFeature nearest_feature{TriangleFeature::interior}; ///< Feature of nearest_face.
+    bool skipped{false}; ///< True if the answer follows from the last one and the motion since.
+    /// Feature of nearest_face at the nearest point.
+    TriangleFeature nearest_feature{TriangleFeature::interior};
     /// The pair is neither loaded nor refined: higher-priority pairs took the capacity.
     bool is_shed{false};
-    /// False: one passed round the other, and there is no force until they are proven apart.
+    /// False: tool and object may have passed through each other. The object makes no force until
+    /// the two are proven apart.
     bool is_joined{true};
     double damping_n_s_per_m{0.0};          ///< Damping of the object's material, as felt now.
     const ContactReport* contacts{nullptr}; ///< Null unless the tool asks for contacts.
@@ -118,13 +120,13 @@ struct PairOutput
 /// The scene after a frame.
 struct SceneOutput
 {
-    std::uint32_t objects{0};             ///< Objects in the scene.
-    std::uint32_t pairs{0};               ///< Awake pairs: those with a PairOutput.
-    std::uint32_t tools_over_capacity{0}; ///< Tools not proven clear as far as they ask.
-    /// Tools over capacity, and tools at a model that is not resident, whose device pose is
-    /// farther away.
+    std::uint32_t objects{0}; ///< Objects in the scene.
+    std::uint32_t pairs{0};   ///< Pairs of tools and near objects, each with a PairOutput.
+    /// Tools whose proven clearance is less than their reach.
+    std::uint32_t tools_over_capacity{0};
+    /// Tools that stop short of the device pose, over capacity or at a model that is not resident.
     std::uint32_t walled_tools{0};
-    std::uint32_t walks{0}; ///< Walks over all objects: at most kBroadWalks.
+    std::uint32_t walks{0}; ///< Searches of all objects for those near a tool; at most kBroadWalks.
     /// Changes that were refused, in the order of ChangeRefusal.
     std::array<std::uint32_t, kChangeRefusals> refused{};
 };
@@ -133,16 +135,17 @@ struct SceneOutput
 struct PoolUse
 {
     std::uint32_t used{0};
-    std::uint32_t used_max{0}; ///< Maximum since the start; for index pages the present use.
-    std::uint32_t capacity{0}; ///< Reserved for the model, which may use more.
+    /// Maximum of `used` since the start; for index pages the present value.
+    std::uint32_t used_max{0};
+    std::uint32_t capacity{0}; ///< Slots reserved for the model, which may use more.
 };
 
-/// Life cycle of a model. Models that a frame starts with completely stay `resident`.
+/// Life cycle of a model. A model that is not streamed is always `resident`.
 enum class ModelStage : std::uint8_t
 {
-    known,    ///< The header is there. No tool is near, or the pools have no room.
+    known,    ///< Only the header is loaded. No tool is near, or the pools have no room.
     wanted,   ///< A tool is near: the base mesh was requested.
-    arriving, ///< The base mesh is there and enters the tree.
+    arriving, ///< The base mesh is loaded, and its faces enter the tree.
     resident, ///< The surface answers queries.
     leaving,  ///< No tool is near: the model is removed from the pools.
 };
@@ -160,7 +163,7 @@ struct ModelOutput
     PoolUse blocks;
     PoolUse nodes;
     std::uint32_t refined_records{0};
-    std::uint64_t state_hash{0}; ///< Names the active faces: equal cuts have equal hashes.
+    std::uint64_t state_hash{0}; ///< Hash of the active faces: equal cuts have equal hashes.
     bool is_static{false};       ///< Refined fully: nothing is left to load, refine or refit.
     ModelStage stage{ModelStage::resident};
 };
@@ -168,13 +171,14 @@ struct ModelOutput
 /// Results of a frame: spans into the frame's own memory, valid until the next run.
 struct FrameOutput
 {
-    std::span<const ToolOutput> tools;   ///< Set-up order.
-    std::span<const PairOutput> pairs;   ///< Objects near each tool, always including the nearest:
-                                         ///< tool by tool, objects in order of their numbers.
+    std::span<const ToolOutput> tools; ///< Set-up order.
+    /// Pairs of each tool with the objects near it, always with the nearest object. Sorted by tool,
+    /// then by object number.
+    std::span<const PairOutput> pairs;
     std::span<const ModelOutput> models; ///< Set-up order.
     WorkCounters work;
     FrameFault faults{FrameFault::none};
-    QueueTake queues; ///< An input of the frame, kept for recordings.
+    QueueTake queues; ///< Events taken from the queues: an input of the frame, kept for recordings.
     SceneOutput scene;
 };
 

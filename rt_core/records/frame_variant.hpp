@@ -2,16 +2,16 @@
 // Copyright the Tactus authors.
 #pragma once
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// Differences from the shipped frame, so that the saving of each shortcut can be measured. The
-/// first ten are shortcuts: without them exact answers are the same and cost more. Not for tools
-/// that are meshes. Recordings are of frames without any difference.
+/// Switches of a frame that measure the saving of each shortcut; the default is the shipped frame.
+/// Without one of the first ten, exact answers are the same and cost more. Mesh tools and
+/// recordings need the default.
 struct FrameVariant
 {
-    /// Checks only objects near a tool: see BroadPhase. Off: the nearest kMaxNear.
+    /// Only objects near a tool are checked (BroadPhase). False: the nearest kMaxNear objects.
     bool finds_neighbours{true};
     /// A tool at rest among objects and faces at rest keeps its last answers and its last force.
     bool lets_tools_rest{true};
@@ -24,17 +24,17 @@ struct FrameVariant
     /// A certified region is not checked until motion uses up its certificate.
     bool keeps_certificates{true};
     bool refits_changed_only{true};
-    /// Requests nothing of a model whose boxes no sphere meets.
+    /// Nothing is requested of a model if no region's sphere meets one of its boxes.
     bool asks_near_models_only{true};
-    /// Skips index pages for some frames after a search for slightly wider spheres.
+    /// After a search with slightly wider spheres, index pages are skipped for some frames.
     bool keeps_searches{true};
-    /// Requests chunks where a tool will be, not only where it is.
+    /// Chunks are requested where a tool will be, not only where it is.
     bool asks_ahead{true};
-    /// Above 0, every coarse face within this many times the reach is split, even if its error is
-    /// small; answers still follow from the faces' errors.
+    /// Above 0: every coarse face within this many times the reach is split, even with a small
+    /// error. Answers still follow from the faces' errors.
     double fixed_radius{0.0};
-    /// Above 0, coarse faces count as the surface if their error is at most this; replaces the
-    /// tolerance that FrameSetup::force_tolerance_n and the pools give. Model frame.
+    /// Above 0: coarse faces with at most this error count as the surface, in metres of the model's
+    /// frame. Replaces the tolerance that follows from FrameSetup::force_tolerance_n and the pools.
     double tolerance_m{0.0};
 };
 

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <span>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -28,9 +28,9 @@ struct LocalTriangle
 enum class AnswerKind : std::uint8_t
 {
     exact,     ///< L and U come from exact faces and differ only by the kernel's error law.
-    separated, ///< L is above the tool's reach: no contact, proven without refining.
+    separated, ///< No contact: L is above the tool's reach, proven without refining.
     bounded,   ///< L < U: the question is open.
-    stale,     ///< Older than allowed, by revision or pose; L and U hold for that pose only.
+    stale, ///< The pose is too old or of another model revision; L and U hold for that pose only.
     /// Like exact, but coarse faces with an error within the tolerance count as the surface: their
     /// error is subtracted from L, and U comes from exact faces and from corners.
     within_tolerance,
@@ -41,7 +41,7 @@ struct DistanceAnswer
 {
     AnswerKind kind{AnswerKind::bounded};
     double lower_m{0.0};       ///< L: no original surface is nearer.
-    double upper_m{kInfinity}; ///< U: some surface is within this.
+    double upper_m{kInfinity}; ///< U: some surface is within this distance.
     /// All original faces within this distance of the core are active and exact, or represented by
     /// faces within the tolerance; negative if not even the touching faces are.
     double certified_radius_m{-1.0};
@@ -53,25 +53,27 @@ struct DistanceAnswer
     TriangleFeature nearest_feature{TriangleFeature::interior};
 };
 
-/// True if the nearest place of the surface is known.
+/// True for the kinds of answers that name the nearest point of the surface.
 [[nodiscard]] constexpr bool is_known(AnswerKind kind) noexcept
 {
     return kind == AnswerKind::exact || kind == AnswerKind::within_tolerance;
 }
 
 /// Data of one pair for the force stage: the triangles of the surface, exact or within the
-/// tolerance, that are within the certified distance of the tool's core. In traversal order, which
-/// does not affect the force.
+/// tolerance, that are within the certified distance of the tool's core. The traversal order of the
+/// triangles does not affect the force.
 struct LocalSurface
 {
     Vec3 center_m{0.0, 0.0, 0.0}; ///< Centre of the core, in the model's frame.
     DistanceAnswer answer;
-    std::span<LocalTriangle> triangles; ///< Capacity; the first `count` belong to the surface.
-    std::span<double> distances_m;      ///< Same size: lower bounds on the distance from the core.
+    /// Memory for triangles; the first `count` are the surface's.
+    std::span<LocalTriangle> triangles;
+    /// Lower bounds on the distances of these triangles from the core.
+    std::span<double> distances_m;
     std::uint32_t count{0};
-    /// More triangles were in reach; the certified radius gives the covered distance.
+    /// True if triangles in reach did not fit. The certified radius then ends before them.
     bool truncated{false};
-    /// Capacity or budget ended the search: a query from nearer may find more.
+    /// True if capacity or budget ended the search; a query from a nearer place may find more.
     bool is_cut{false};
 };
 static_assert(sizeof(LocalTriangle) == 40);

@@ -5,7 +5,7 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -13,19 +13,21 @@ namespace tactus
 /// ChangeRefusal::bad_material.
 struct Material
 {
-    /// > 0; the softer of this and the tool's stiffness is used.
+    /// Stiffness above 0; the lower one of this and the tool's is used.
     double stiffness_n_per_m{kInfinity};
-    /// Coulomb's coefficient while the tool sticks; 0 .. kFrictionMax.
+    /// Coulomb coefficient while the tool sticks; 0 .. kFrictionMax.
     double static_friction{0.0};
-    double dynamic_friction{0.0}; ///< While it slides; 0 .. the static one.
+    /// Coulomb coefficient while the tool slides; 0 .. static_friction.
+    double dynamic_friction{0.0};
     /// Damping of motion across the surface, in contact; 0 .. kDampingMax_n_s_per_m.
     double damping_n_s_per_m{0.0};
     /// Damping of motion along the surface, in contact; 0 .. kDampingMax_n_s_per_m.
     double viscosity_n_s_per_m{0.0};
-    /// Height of the surface's bumps, from trough to crest along an axis of the object; 0: smooth.
-    /// At most kTextureSteepest of their length (force/texture.hpp).
+    /// Height of bumps on the surface, from trough to crest along an axis of the object; 0: smooth.
+    /// Its maximum is kTextureSteepest x texture_length_m (force/texture.hpp).
     double texture_height_m{0.0};
-    /// Distance from crest to crest; with bumps kTextureLengthMin_m .. kTextureLengthMax_m.
+    /// Distance of the bumps from crest to crest. With bumps it must be in kTextureLengthMin_m ..
+    /// kTextureLengthMax_m.
     double texture_length_m{0.0};
 
     [[nodiscard]] bool operator==(const Material&) const noexcept = default;

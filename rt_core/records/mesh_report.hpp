@@ -9,7 +9,7 @@
 #include <compare>
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -26,21 +26,22 @@ struct MeetingFaces
 /// Result of the test whether any two faces of tool and object share a point.
 enum class Intersection : std::uint8_t
 {
-    open,   ///< Faces that are not exact may meet.
-    none,   ///< Proven that none meet.
-    proven, ///< Some faces meet.
+    open,   ///< Unknown: faces that are not exact may meet.
+    none,   ///< Proven: no faces meet.
+    proven, ///< Proven: at least two faces meet.
 };
 
 /// Results of a pair whose tool is a mesh.
 struct MeshReport
 {
     Intersection intersection{Intersection::open};
-    /// Exact faces; lowest ids first, the tool's before the object's.
+    /// Pairs of exact faces that meet, sorted by the tool's face id, then by the object's.
     StaticVector<MeetingFaces, kMaxMeetingFaces> meeting;
-    /// More met: those with the lowest ids are kept; with kEnoughMeetingFaces those found first.
+    /// True if more pairs meet. The pairs with the lowest ids are kept, or those found first if
+    /// kEnoughMeetingFaces ended the search.
     bool is_truncated{false};
-    bool is_complete{false}; ///< No pair was left out, and none may exist unseen.
-    /// The tool's face at the nearest point, if the object's is known.
+    bool is_complete{false}; ///< True if the report is proven to hold every pair that meets.
+    /// Face of the tool at the nearest point; none if the object's nearest face is unknown.
     FaceId nearest_tool_face{};
 
     /// Resets the report without writing unused pairs.

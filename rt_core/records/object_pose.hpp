@@ -11,21 +11,21 @@
 
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
-/// Pose of an object: the frame of its source mesh in the world. The default is the source mesh's
-/// own pose. Inside the frame, from model_pose() on, it is the pose of the model's frame. A
-/// SceneChange beyond kPoseReachMax_m, kPoseScaleMin to kPoseScaleMax or kRotationTolerance is
-/// ChangeRefusal::bad_pose.
+/// Pose of an object in the world: of its source mesh's frame, or, from model_pose() on, of its
+/// model's frame. A SceneChange with a pose beyond kPoseReachMax_m, kPoseScaleMin .. kPoseScaleMax
+/// or kRotationTolerance is refused as ChangeRefusal::bad_pose.
 struct ObjectPose : Similarity
 {
-    std::int64_t stamp_ns{0}; ///< The sender's time; frames ignore it.
+    std::int64_t stamp_ns{0}; ///< Time of the pose on the sender's clock; frames ignore it.
     /// Arrival on the clock of FrameInput::now_ns. A pose older than FrameSetup::pose_age_max_ns
     /// makes answers stale; 0: the pose does not age.
     std::int64_t arrival_ns{0};
-    std::uint32_t revision{0}; ///< Model revision of the pose; another one is stale.
+    /// Model revision that the pose is for; answers for another revision are stale.
+    std::uint32_t revision{0};
 };
 
 /// Model and material of an object.
@@ -55,8 +55,8 @@ struct ObjectSpec
     return pose.local_to_world(model_m);
 }
 
-/// Bound on the error of distances from a core of this radius round a place of the world that the
-/// conversion into the model's frame and back causes: see kPoseRounding.
+/// Bound, in metres, on the rounding of a distance that is computed in the model's frame and
+/// converted to the world (kPoseRounding). The core has the centre `world_m` and this radius.
 [[nodiscard]] inline double pose_rounding_m(const ObjectPose& pose, const Vec3& world_m,
                                             double radius_m) noexcept
 {
@@ -65,7 +65,7 @@ struct ObjectSpec
            ((world_m - pose.translation_m).norm() + world_m.norm() + 2.0 * radius_m);
 }
 
-/// Age of a pose at `now_ns`; 0 if it arrived after the frame began.
+/// Age of a pose at `now_ns`; 0 if the pose does not age or arrived after `now_ns`.
 [[nodiscard]] inline std::int64_t age_ns(const ObjectPose& pose, std::int64_t now_ns) noexcept
 {
     return pose.arrival_ns == 0 || pose.arrival_ns > now_ns ? 0 : now_ns - pose.arrival_ns;

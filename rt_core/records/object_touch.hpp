@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -18,18 +18,19 @@ struct ObjectTouch
 {
     std::uint32_t object{0};
     std::uint32_t tool{0};
-    /// Sphere that holds the tool and all of the object that it may meet in a frame.
+    /// Sphere that holds the tool and all points of the object that the tool may meet in a frame.
     Vec3 place_m{0.0, 0.0, 0.0};
     double radius_m{0.0};
-    bool is_in_reach{true}; ///< The object may reach the tool in this frame.
+    bool is_in_reach{true}; ///< True if the object may reach the tool in this frame.
 };
 using ObjectTouches = StaticVector<ObjectTouch, kMaxPairs>;
 
-/// Largest displacement of a tool in a frame, and the skin of a tool without a radius.
+/// Distance beyond a tool's radius for its displacement in a frame and for the skin of a tool
+/// without a radius.
 inline constexpr double kTouchSlack_m = 5e-3;
 
-/// True if the surface may reach the tool, which has this radius, by the end of the frame; pairs
-/// are measured at its beginning.
+/// True if the surface may reach a tool of this radius by the end of the frame. A pair's distance
+/// is that at the frame's beginning.
 [[nodiscard]] inline bool is_in_reach(const PairOutput& pair, double radius_m) noexcept
 {
     return pair.lower_m <= radius_m + kTouchSlack_m;

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string_view>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -18,17 +18,17 @@ namespace tactus
 /// version of that format (platform/recording/setup_coding.cpp).
 enum class Prediction : std::uint8_t
 {
-    local_neighbours, ///< Fixed place; the present speed sets the radius that may be touched.
-    linear,           ///< Straight on at the present velocity.
-    quadratic,        ///< Present velocity and acceleration.
-    distance_query,   ///< Straight on, but not through the surface of the last query.
-    automatic,        ///< The one of these with the least recent error.
+    local_neighbours, ///< The tool stays in place; its speed sets the radius that it may touch.
+    linear,           ///< The tool moves straight on at its present velocity.
+    quadratic,        ///< The tool keeps its present velocity and acceleration.
+    distance_query, ///< The tool moves straight on, but not through the surface of the last query.
+    automatic,      ///< The method above with the least recent error.
 };
-/// Number of methods that predict.
+/// Number of methods, without `automatic`.
 inline constexpr std::size_t kPredictions = 4;
 static_assert(static_cast<std::size_t>(Prediction::automatic) == kPredictions);
 
-/// Names in options and reports, in order.
+/// Names in options and reports, in the order of Prediction.
 inline constexpr std::array<std::string_view, kPredictions + 1> kPredictionNames{
     "local", "linear", "quadratic", "distance", "auto"};
 [[nodiscard]] constexpr std::string_view prediction_name(Prediction prediction) noexcept

@@ -14,28 +14,31 @@ namespace tactus
 /// this order if it can't serve all.
 enum class PriorityClass : std::uint8_t
 {
-    touching, ///< Contact, possible within kTouching_s or not disproved yet.
+    touching, ///< Contact possible within kTouching_s, or not disproved yet.
     soon,     ///< Contact possible within kSoon_s.
-    later,    ///< All others, and query-only tools that arrive soon.
-    last,     ///< Query-only tools that arrive later.
+    later,    ///< Contact possible later; a query-only tool may arrive within kSoon_s.
+    last,     ///< Query-only tools without possible contact within kSoon_s.
 };
 inline constexpr std::uint32_t kPriorityClasses = 4;
 static_assert(static_cast<std::uint32_t>(PriorityClass::last) + 1 == kPriorityClasses);
 
 struct Priority
 {
-    /// A contact takes ten frames of splits and one or two loads.
+    /// Time limit of PriorityClass::soon: a contact takes ten frames of splits and one or two
+    /// loads.
     static constexpr double kSoon_s = 0.05;
     static constexpr double kTouching_s = 0.001;
-    /// A device at rest may reach this speed at any moment.
+    /// Least approach speed that counts: a device at rest may reach it at any moment.
     static constexpr double kLeastSpeed_m_per_s = 0.02;
 
     PriorityClass of{PriorityClass::touching};
-    bool query_only{false}; ///< Query-only tool: behind other pairs of its class, too.
-    double contact_s{0.0};  ///< Time until the tool may touch the object.
+    /// True for a query-only tool, which comes after other tools of its class.
+    bool query_only{false};
+    double contact_s{0.0}; ///< Time until the tool may touch the object.
 
-    /// Priority of a tool that is proven to be free for `gap_m` and whose device approaches at
-    /// `speed_m_per_s`. A query-only tool has no force to lose and is one class later.
+    /// Priority of a pair with `gap_m` of proven free distance, >= 0 (asserted), whose device
+    /// approaches at `speed_m_per_s`. A query-only tool has no force to lose and is one class
+    /// later.
     [[nodiscard]] static Priority at(double gap_m, double speed_m_per_s, bool query_only) noexcept
     {
         TACTUS_ASSERT(gap_m >= 0.0);
@@ -51,7 +54,7 @@ struct Priority
     }
 
     constexpr bool operator==(const Priority&) const noexcept = default;
-    /// Higher priority first.
+    /// True if `a` has the higher priority.
     [[nodiscard]] friend constexpr bool operator<(const Priority& a, const Priority& b) noexcept
     {
         if (a.of != b.of || a.query_only != b.query_only)

@@ -14,23 +14,23 @@ namespace tactus
 
 enum class QueueEventKind : std::uint8_t
 {
-    arrival,     ///< A filled slot, handed over.
-    link_update, ///< More records of a page handed over before are linked.
-    /// A base mesh does not arrive: the cells lent for it are returned.
+    arrival,     ///< A filled slot is handed to the haptic thread.
+    link_update, ///< More records of an adopted page are linked.
+    /// A requested base mesh does not arrive; its memory cells are returned.
     base_back,
 };
 
-/// Message of the transport thread to the haptic thread about one slot, in order. These are all
-/// that a frame receives from outside besides its arguments, so a recording keeps them.
+/// Message of the transport thread to the haptic thread about one slot. A frame receives nothing
+/// else from outside besides its arguments, so a recording keeps all messages, in order.
 struct QueueEvent
 {
     ContentKey key;
-    std::uint32_t slot{0}; ///< First cell, if the slot is a base mesh's.
-    /// For an arrival: the number of slots that the transport thread had taken back in all when it
-    /// linked the page (modulo 2^32). Linking depends on it, so a replay waits for the same number.
+    std::uint32_t slot{0}; ///< Number of the slot; for a base mesh the number of its first cell.
+    /// Slots that the transport thread had taken back in all (modulo 2^32) when it linked an
+    /// arrived page. Linking depends on this number, so a replay waits until it is the same.
     std::uint32_t freed_taken{0};
     static_assert(kRecordsPerChunk <= 64);
-    std::uint64_t linked{0}; ///< One bit per record of the chunk; 0 for an index page.
+    std::uint64_t linked{0}; ///< Linked records of the chunk, one bit each; 0 for an index page.
     QueueEventKind kind{QueueEventKind::arrival};
     std::uint8_t owner{0}; ///< Model that the piece belongs to.
 };

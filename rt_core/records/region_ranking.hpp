@@ -21,13 +21,13 @@ struct RankedRegion
     Vec3 center_m{0.0, 0.0, 0.0};
     double radius_m{0.0};
     std::int64_t horizon_ns{0};
-    PriorityClass of{PriorityClass::touching}; ///< Class of its pair.
+    PriorityClass of{PriorityClass::touching}; ///< Priority class of the pair that may touch here.
 };
 
 /// The regions of one frame, highest priority first.
 struct RegionRanking : StaticVector<RankedRegion, kMaxRankedRegions>
 {
-    bool lacks_present{false}; ///< A sphere where a tool is now did not fit.
+    bool lacks_present{false}; ///< True if a sphere at a tool's present place did not fit.
 };
 
 } // namespace tactus

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -22,8 +22,8 @@ enum class SafetyState : std::uint8_t
 inline constexpr std::size_t kSafetyStates = 4;
 static_assert(static_cast<std::size_t>(SafetyState::brake) + 1 == kSafetyStates);
 
-/// Causes for which a force is removed, as a set. The first five are the DHD's; the others report
-/// more exactly what one of our watches has found.
+/// Causes for which a force is removed, as a set of bits. The first five are those of the DHD; the
+/// others are more specific causes of this library.
 enum class ForceOff : std::uint32_t
 {
     none = 0,
@@ -37,9 +37,9 @@ enum class ForceOff : std::uint32_t
     stale = 1U << 5U,
     garbage = 1U << 6U,   ///< A sample or a force is no number or impossible.
     stall = 1U << 7U,     ///< Frames were missed.
-    host = 1U << 8U,      ///< A host is lost that may still have to send parts of its model.
+    server = 1U << 8U,    ///< A server is lost that may still have to send parts of its model.
     assertion = 1U << 9U, ///< The haptic thread found a bug in itself.
-    /// While the tool touched an object, one was removed or moved too fast.
+    /// An object was removed or moved too fast while the tool touched an object.
     jump = 1U << 10U,
     halted = 1U << 11U,           ///< The proxy is halted and waits for surface data.
     over_constrained = 1U << 12U, ///< Objects leave the tool no room.
@@ -74,7 +74,7 @@ inline constexpr std::array<const char*, kSafetyStates> kSafetyStateNames{"reset
 /// Names of the causes, in the order of ForceOff's bits.
 inline constexpr std::array<const char*, kForceOffs> kForceOffNames{
     "velocity",         "watchdog", "software", "disconnect", "deadman", "stale",
-    "garbage",          "stall",    "host",     "assertion",  "jump",    "halted",
+    "garbage",          "stall",    "server",   "assertion",  "jump",    "halted",
     "over_constrained", "clutch",   "starved",  "growth"};
 
 } // namespace tactus

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
@@ -20,12 +20,12 @@ enum class SceneChangeKind : std::uint8_t
     object_goes,
     tool_comes,
     tool_goes,
-    /// New material; tools that touch the object feel it blended in.
+    /// The object gets a new material, which tools in contact feel blended in.
     object_feels,
 };
 inline constexpr std::size_t kSceneChangeKinds = 6;
 
-/// True if a change of this kind has a pose; below, a material.
+/// True if a change of this kind has a pose, or, for has_material(), a material.
 [[nodiscard]] constexpr bool has_pose(SceneChangeKind kind) noexcept
 {
     return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_moves;
@@ -35,32 +35,37 @@ inline constexpr std::size_t kSceneChangeKinds = 6;
     return kind == SceneChangeKind::object_comes || kind == SceneChangeKind::object_feels;
 }
 
-/// One change of the scene, an input of a frame. The caller numbers the objects: below the
-/// capacity, and with a higher generation each time that another object takes a number. A change
-/// with another generation than the object's is too old.
+/// One change of the scene, an input of a frame. The caller chooses object numbers below the
+/// capacity, and a higher generation each time it uses a number again. A change with another
+/// generation than the object's is refused.
 struct SceneChange
 {
     SceneChangeKind kind{SceneChangeKind::object_moves};
     std::uint32_t number{0};     ///< Number of the object, or of the tool in set-up order.
     std::uint32_t generation{0}; ///< Generation of the object.
-    ObjectSpec object;           ///< Added object; only the material if that changes.
-    ObjectPose pose;             ///< Pose of an added or moved object's source mesh.
+    /// Model and material of an added object; only the material for object_feels.
+    ObjectSpec object;
+    ObjectPose pose; ///< Pose of an added or moved object's source mesh.
 };
 
 /// Reasons why a change was refused; the scene is unchanged.
 enum class ChangeRefusal : std::uint8_t
 {
-    /// The frame has taken kMaxSceneChanges. Send further ones with later frames.
+    /// The frame has taken kMaxSceneChanges already. Send the change with a later frame.
     too_many,
-    number_too_big, ///< No such number. Raise `--objects` or `--tools`.
-    already_here,   ///< Another object has the number, or the tool is present.
-    not_here,       ///< No object has that number, or the tool was removed.
-              /// The object meant was removed, or the added one has a used number and generation.
+    /// No object or tool can have this number. Raise `--objects` or `--tools`.
+    number_too_big,
+    /// Another object has the number, or the tool is present.
+    already_here,
+    /// No object has the number, or the tool was removed.
+    not_here,
+    /// The object meant was removed, or the added one has a used number and generation.
     old_generation,
-    unknown_model, ///< The object's model is unknown or a tool.
-    bad_material,  ///< Material out of range.
-                  /// No rotation to kRotationTolerance, or beyond kPoseReachMax_m or a limit of the
-                  /// scale.
+    /// The object's model does not exist or belongs to a tool.
+    unknown_model,
+    /// The material is out of range.
+    bad_material,
+    /// No rotation to kRotationTolerance, or beyond kPoseReachMax_m or a limit of the scale.
     bad_pose,
 };
 inline constexpr std::size_t kChangeRefusals = 8;

@@ -8,25 +8,30 @@
 #include <cstddef>
 #include <cstdint>
 
-// Any thread: values, and functions of their arguments alone; no call waits or allocates.
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 
 /// Shortcuts that avoid work; FrameVariant turns each off.
 enum class Skip : std::uint8_t
 {
-    /// Objects of a scene proven to be far from a tool by one comparison.
+    /// Objects of a scene that one comparison proved to be far from a tool.
     objects,
-    models,   ///< No sphere is near any box of the model: no request.
-    searches, ///< Index pages were searched for these spheres recently.
-    pairs,    ///< Pairs at rest: proven out of reach.
-              /// Regions whose certificate still holds: no face is checked.
+    /// Models with no region's sphere near any of their boxes: nothing is requested.
+    models,
+    /// Regions whose spheres were inside those of a recent search of index pages.
+    searches,
+    /// Pairs at rest, proven out of reach: no query.
+    pairs,
+    /// Regions whose certificate still holds: no face is checked.
     regions,
-    starts, ///< Queries that began where the last one ended.
-    boxes,  ///< Tree boxes not refitted: nothing changed in them.
-            /// Tools at rest among objects at rest: answers and forces are the last ones.
+    /// Queries that began where the last query of the pair ended.
+    starts,
+    /// Boxes of AB-Trees that were not refitted, as nothing in them changed.
+    boxes,
+    /// Tools at rest among objects at rest: they keep the last answers and forces.
     tools,
-    /// All tools at rest, with models that are resident as a whole.
+    /// Whole frames: all tools at rest, and all models resident as a whole.
     frames,
 };
 inline constexpr std::size_t kSkips = 9;
@@ -74,7 +79,7 @@ struct WorkCounters
     std::uint32_t cache_hits{0};   ///< Wanted chunks found resident.
     std::uint32_t cache_misses{0}; ///< Wanted chunks absent and requested.
     SkipCounters skipped;
-    WorkBudget budget; ///< Total cost, and its limit.
+    WorkBudget budget; ///< Total cost of the frame's work, and its limit.
 
     WorkCounters& operator+=(const WorkCounters& other) noexcept
     {
@@ -103,29 +108,34 @@ enum class FrameFault : std::uint32_t
 {
     none = 0,
     split_budget_spent = 1U << 0U, ///< Faces in reach stay coarse. Raise `splits` or `work`.
-    forest_full = 1U << 1U,        ///< A split was refused. Give more `--pool-mib`.
-    tree_full = 1U << 2U,          ///< No block or node for a face. Give more `--pool-mib`.
-    chunk_late = 1U << 3U,         ///< A needed record isn't resident. Look further ahead.
-    cache_full = 1U << 4U,         ///< All pages are in use. Give more `--cache-mib`.
+    forest_full = 1U << 1U, ///< A split was refused for lack of faces. Give more `--pool-mib`.
+    tree_full = 1U << 2U,   ///< No block or node for a face. Give more `--pool-mib`.
+    chunk_late = 1U << 3U,  ///< A needed record isn't resident. Look further ahead.
+    cache_full = 1U << 4U,  ///< All pages are in use. Give more `--cache-mib`.
     node_budget_spent = 1U << 5U,  ///< A walk was cut short. Raise `work`, `nodes`, `triangles`.
     surface_truncated = 1U << 6U,  ///< More triangles in reach than kMaxLocalTriangles.
     model_inconsistent = 1U << 7U, ///< A record contradicts the mesh: rebuild the model.
     tool_invalid = 1U << 8U,       ///< A device sample was not usable.
-    proxy_halted = 1U << 9U,       ///< Its surface is not certified; ForceFader fades a force.
-    tool_stuck = 1U << 10U,        ///< The device's time does not advance; ForceFader fades the
-                                   ///< force.
-    /// Goal faster than any user's motion; no force until it returns.
+    proxy_halted = 1U << 9U,       ///< Surface round a proxy is not certified; its force fades.
+    tool_stuck = 1U << 10U,        ///< The device's time does not advance; the force fades.
+    /// A goal moved faster than any user; no force until the goal is back at the proxy.
     tool_jumped = 1U << 11U,
-    proxy_over_constrained = 1U << 12U, ///< Objects leave no room, or one runs over it.
-    refine_heap_full = 1U << 13U,       ///< More coarse faces in reach than kRefineHeap.
-    held_records_full = 1U << 14U,      ///< More records of open closures than kMaxHeldRecords.
-    ranking_full = 1U << 15U,           ///< More regions at tools than kMaxRankedRegions.
-    tool_over_capacity = 1U << 16U, ///< Contacts of a tool did not fit: kMaxContacts and others.
-    pair_shed = 1U << 17U,          ///< Pair deferred for a higher-priority one. More `--pool-mib`.
-    scene_over_capacity = 1U << 18U, ///< Tool deferred: too many objects near it. See kMaxPairs.
-    /// A touched object was removed or jumped; ForceFader fades a force.
+    /// Objects leave a proxy no room, or an object passes over it.
+    proxy_over_constrained = 1U << 12U,
+    refine_heap_full = 1U << 13U,  ///< More coarse faces in reach than kRefineHeap.
+    held_records_full = 1U << 14U, ///< More records of open closures than kMaxHeldRecords.
+    ranking_full = 1U << 15U,      ///< More regions at tools than kMaxRankedRegions.
+    /// Some contacts of a tool did not fit (kMaxContacts and other limits).
+    tool_over_capacity = 1U << 16U,
+    /// Pair without loading or refinement, for one of higher priority. More `--pool-mib`.
+    pair_shed = 1U << 17U,
+    /// A tool has too many objects near it and goes no farther than its proven clearance. See
+    /// kMaxPairs.
+    scene_over_capacity = 1U << 18U,
+    /// A touched object was removed or jumped; the tool's force fades.
     object_lost = 1U << 19U,
-    plane_budget_spent = 1U << 20U, ///< Proxy stopped early. Raise `planes` or `work`.
+    /// A proxy stopped early, as its checks were used up. Raise `planes` or `work`.
+    plane_budget_spent = 1U << 20U,
 };
 inline constexpr std::size_t kFrameFaults = 21;
 /// Names of the flags, in the order of FrameFault's bits.

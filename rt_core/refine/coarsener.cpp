@@ -18,8 +18,8 @@ namespace
 /// Distance, as a share of the keep distance, that a tool may go beyond a record's slack before the
 /// record is checked, so that it is not checked at every step.
 constexpr double kPatience = 0.1;
-/// Range of the wheel, in keep distances of the first question; a record with more slack is checked
-/// once in between.
+/// Travel of one turn of the wheel, as a multiple of the largest keep distance at its set-up. A
+/// record with more slack is first checked when that travel is used up.
 constexpr double kHorizon = 4.0;
 
 } // namespace
@@ -41,7 +41,7 @@ void Coarsener::follow(double farthest_m) noexcept
     travel_ += farthest_m;
 }
 
-/// Moves the travel beyond all that any record in the wheel waits for.
+/// Increases the travel so that every record in the wheel is due.
 void Coarsener::look_at_all() noexcept
 {
     travel_ += horizon_m_;
@@ -102,7 +102,7 @@ void Coarsener::list(const Place& place, std::int64_t bucket) noexcept
     PageWaits& waits = waits_[place.slot];
     if ((waits.listed & place.bit()) != 0)
     {
-        return; // Already listed, for an earlier check.
+        return; // Already in a bucket, where it will be checked.
     }
     waits.listed |= place.bit();
     const std::int64_t within = std::clamp(bucket, cursor_, cursor_ + kBuckets - 1);
@@ -138,7 +138,7 @@ void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budg
 }
 
 /// Checks a record taken from the wheel: merges it, lists it where it is due next, or leaves it
-/// unlisted if it is held or needed.
+/// unlisted while it is held or others refined its faces further.
 void Coarsener::look_at(const Place& place, std::span<const RefineRequest> requests,
                         WorkCounters& work) noexcept
 {

@@ -18,10 +18,10 @@ namespace tactus
 
 /// Merges the records that the tools have left behind: the first phase of a refinement.
 ///
-/// A record is left behind if its star, with all errors in it, is beyond every question's keep
-/// distance, or if the faces without it are within every question's tolerance. Its slack is the
-/// travel of the tools before that can happen. The record waits in a wheel of buckets by travel,
-/// and a frame checks the buckets that the tools have passed.
+/// A record is left behind if its star, errors added, is beyond every question's keep distance, or
+/// if the faces after its merge are within every question's tolerance. The record's slack is the
+/// travel of the tools before the former can happen. The record waits in a wheel of buckets by
+/// travel, and a frame checks the buckets that the tools have passed.
 ///
 ///     passed, empty | cursor: due ...... | travel | later ......... one turn is the horizon
 ///
@@ -37,17 +37,18 @@ public:
     Coarsener(VertexForest& forest, PageTable& pages, const RefineScratch& scratch,
               float quantum_m) noexcept;
 
-    /// Travel of the questions, including shrinking keep distances, of at most `farthest_m`.
+    /// Adds `farthest_m` to the travel: a bound on every question's motion since the last frame,
+    /// plus the shrinkage of its keep distance.
     void follow(double farthest_m) noexcept TACTUS_NONBLOCKING;
     /// Makes every record due, because the questions changed.
     void look_at_all() noexcept TACTUS_NONBLOCKING;
-    /// Lists a record, of the page in `slot`, that was refined.
+    /// Lists a record that was just refined; `slot` is its page's.
     void look_when_left(std::uint32_t slot, RecordId id, const VsplitRecord& record,
                         std::span<const RefineRequest> requests) noexcept TACTUS_NONBLOCKING;
-    /// Makes a record due that is no longer held.
+    /// Lists a record that is no longer held: due at once, unless it is in a bucket already.
     void look_soon(RecordId record) noexcept TACTUS_NONBLOCKING;
 
-    /// Resets the wheel after the forest has left, with nothing refined.
+    /// Resets the wheel; no record may be refined any more (VertexForest::leave()).
     void forget_all() noexcept TACTUS_NONBLOCKING;
 
     /// One frame: checks up to `budgets.scanned` refined records and merges up to `budgets.merges`.
@@ -71,7 +72,7 @@ private:
     {
         return {pages_->find(chunk_of(record)), place_in_chunk(record)};
     }
-    /// Bucket of a travel.
+    /// Number of the bucket for a travel, not yet modulo kBuckets.
     [[nodiscard]] std::int64_t bucket_of(double travel_m) const noexcept
     {
         return static_cast<std::int64_t>(travel_m * buckets_per_m_);

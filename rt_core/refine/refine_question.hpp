@@ -18,7 +18,7 @@
 namespace tactus
 {
 
-/// State of a question that is kept from frame to frame.
+/// State of one question, kept from frame to frame.
 struct RefineMemory
 {
     Vec3 center_m{0.0, 0.0, 0.0};
@@ -31,28 +31,28 @@ struct RefineMemory
     KernelProbe probe{}; ///< Probe at this frame's centre.
 };
 
-/// Question of one pair to a model: every original face within `reach_m` of the point, exactly.
-/// Model frame, metres; the centre is not is_beyond_kernels().
+/// Demand of one pair on a model: all original faces within `reach_m` of `center_m` must be active.
+/// Model frame, metres; the centre must not be is_beyond_kernels() (asserted).
 ///
-/// With a surface, only the faces within reach_m - span_m of it: the sphere of `span_m` holds the
-/// surface. Distances, errors subtracted, are still given from the centre, larger by the span than
-/// those from the surface.
+/// If `surface` is set, only faces within reach_m - span_m of that surface are needed; the sphere
+/// of radius `span_m` round the centre holds it. Distances minus errors are then those from the
+/// surface, plus `span_m`.
 struct RefineQuestion
 {
     Vec3 center_m{0.0, 0.0, 0.0};
     double reach_m{0.0};
     double keep_m{0.0}; ///< Distance beyond which records may be merged (hysteresis).
     RefineMemory* memory{nullptr};
-    OtherSurface* surface{nullptr}; ///< Null for a sphere.
+    OtherSurface* surface{nullptr}; ///< Surface that faces are near; null: the centre.
     double span_m{0.0};
     double moved_m{0.0};      ///< Bound on the motion of the surface's points since the last frame.
     double ahead_m{0.0};      ///< Distance refined beyond the reach, in addition to the usual one.
-    bool counts_errors{true}; ///< False: coarse faces are wanted by distance alone.
-    ErrorCode tolerance{0};   ///< Faces with an error up to this need no split.
+    bool counts_errors{true}; ///< False: errors are not subtracted from distances.
+    ErrorCode tolerance{0};   ///< Faces with errors up to this stay.
     /// Unfinished search of this question near another surface, or null.
     UnfinishedSearch* unfinished{nullptr};
-    /// Distance of the question's place from the tool's: the question predicts that the tool will
-    /// be there, so its faces may wait. 0: needed now.
+    /// Distance of the centre from the tool's present place if it is a predicted place, whose faces
+    /// may wait. 0: present place, faces needed now.
     double later_m{0.0};
 };
 
@@ -62,21 +62,22 @@ struct RefineQuestion
     return question.memory->certified_m < question.reach_m;
 }
 
-/// Records that were split for a record which the budget did not reach. They are not merged until
-/// that is split or no longer wanted. One for each pair and model, kept from frame to frame.
+/// Unfinished split of a record for which the budget did not suffice. The records already split for
+/// it are held, which means not merged, until it is split or no longer wanted. One for each pair
+/// and model, kept from frame to frame.
 struct Closure
 {
     static constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
 
-    RecordId target{};               ///< None: no closure is open.
-    std::uint32_t first_held{kNone}; ///< Head of the closure's list in the refiner.
-    std::uint32_t saved{0};          ///< Splits that the pair left to others: see SplitShares.
-    std::uint32_t waited{0};         ///< Consecutive frames without a split left for it.
+    RecordId target{};               ///< Record to split; none: no closure is open.
+    std::uint32_t first_held{kNone}; ///< First entry in RefineScratch::held.
+    std::uint32_t saved{0};          ///< Savings of the pair, see SplitShares.
+    std::uint32_t waited{0};         ///< Consecutive frames without a share of splits.
     /// Cause, in the last frame, for which faces needed now were not split.
     FrameFault late_for{FrameFault::none};
 };
 
-/// Request of one pair to one model in a frame; without questions the pair needs nothing more.
+/// Demand of one pair on one model in a frame; without questions the pair needs nothing more.
 struct RefineRequest
 {
     ModelId model{};
@@ -96,7 +97,7 @@ struct RefineRequest
         return std::ranges::any_of(questions, [](const RefineQuestion& question)
                                    { return question.surface != nullptr; });
     }
-    /// True if a split for it may be due, now or later.
+    /// True if a split for the request may be due, now or later.
     [[nodiscard]] bool is_open() const noexcept
     {
         return !closure->target.is_none() ||

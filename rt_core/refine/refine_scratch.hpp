@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// A record that must not be merged yet, in the list of its closure or of free entries.
+/// A record that must not be merged yet, in its closure's list, or a free entry.
 struct HeldRecord
 {
     RecordId record{};
@@ -24,25 +24,24 @@ struct HeldRecord
 /// A coarse face that is wanted, and its state when it was found.
 struct RefineCandidate
 {
-    /// Distance minus error minus reach, the least over the questions, each with its `later_m`;
-    /// above zero the face is only looked ahead for.
+    /// Least over the questions of distance - error - reach_m + later_m. At most 0: the face is
+    /// needed now; above: only ahead of the tool.
     double excess_m{0.0};
     PrimId prim{};
     FaceState state;
 };
 
-/// Schedule for the merge checks of a page's records: see Coarsener. 328 B.
+/// Schedule of the merge checks of a page's records (Coarsener). 328 B.
 struct PageWaits
 {
     std::array<std::uint32_t, kRecordsPerChunk> next{}; ///< Next record in the bucket, slot x 64 +
                                                         ///< place.
     std::array<std::uint8_t, kRecordsPerChunk> dependents{}; ///< Faces refined further by others.
-    std::uint64_t listed{0}; ///< One bit per record: it is in a bucket.
+    std::uint64_t listed{0}; ///< Records that are in a bucket, one bit each.
 };
 
-/// Memory of refinement, shared by all models of a frame, which take turns, and the records that
-/// their closures hold from frame to frame, kMaxHeldRecords of them in all. 29 KiB, and 328 B per
-/// page slot for the merge checks of its records, which the slot's owner uses.
+/// Memory of refinement, used by all models of a frame in turn: 29 KiB, and 328 B per page slot for
+/// its owner's merge checks. Only held records and merge checks last from frame to frame.
 ///
 /// Haptic thread only.
 struct RefineScratch
@@ -61,10 +60,10 @@ struct RefineScratch
     }
 
     std::span<RefineCandidate> heap;
-    std::span<RecordId> stack; ///< Path of a closure.
-    std::span<RecordId> done;  ///< Records that a closure split.
+    std::span<RecordId> stack; ///< Records on the path of a depth-first closure.
+    std::span<RecordId> done;  ///< Records that the present closure split.
     std::span<HeldRecord> held;
-    std::span<PageWaits> waits;              ///< Indexed by page slot of all models.
+    std::span<PageWaits> waits;              ///< Indexed by page slot.
     std::uint32_t free_held{Closure::kNone}; ///< First free entry.
 };
 

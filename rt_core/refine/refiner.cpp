@@ -18,11 +18,11 @@ namespace tactus
 namespace
 {
 
-/// Splits whose faces are measured against another surface at once, one by one. For more splits,
-/// one walk for all is cheaper: their faces are searched again.
+/// Splits of one refine() whose new faces are measured against another surface one by one. After
+/// more splits one walk for all faces is cheaper.
 constexpr std::uint32_t kMeasuredStars = 8;
-/// Coarse faces that are searched near another surface: this many for each allowed split, and at
-/// least the number below. Some wait for their chunks.
+/// Coarse faces to find near another surface: this many for each allowed split, and at least the
+/// number below, as the records of some are not resident.
 constexpr std::uint32_t kFacesPerSplit = 2;
 constexpr std::uint32_t kLeastFaces = 16;
 
@@ -37,20 +37,20 @@ double target_of(const RefineQuestion& question) noexcept
     return question.reach_m + look_ahead * (question.reach_m - question.span_m) + question.ahead_m;
 }
 
-/// Distance by which a face is too far to be needed now, if its distance minus error is `lower_m`
-/// from the question's place: an upper bound of that from the tool's place.
+/// Excess of a face (RefineCandidate); `lower_m` is its distance minus error from the question's
+/// centre.
 double excess_of(const RefineQuestion& question, double lower_m) noexcept
 {
     return lower_m - question.reach_m + question.later_m;
 }
 
-/// The part of a face's error that counts.
+/// Part of a face's error that is subtracted from its distance.
 double counted(const RefineQuestion& question, double error_m) noexcept
 {
     return question.counts_errors ? error_m : 0.0;
 }
 
-/// The part of a face's error that doesn't count.
+/// Part of a face's error that is not subtracted from its distance.
 double not_counted(const RefineQuestion& question, double error_m) noexcept
 {
     return error_m - counted(question, error_m);
@@ -63,7 +63,7 @@ void leave(const RefineQuestion& question, double lower_m) noexcept
     question.memory->certified_m = std::min(question.memory->certified_m, lower_m);
 }
 
-/// The same for a face with this excess over the reach of one of the questions.
+/// Lowers the questions' certificates for a coarse face that stays, by its excess.
 void leave_at(std::span<const RefineQuestion> questions, double excess_m) noexcept
 {
     for (const RefineQuestion& question : questions)
@@ -163,8 +163,8 @@ FrameFault Refiner::refine(const RefineRequest& request, SplitLimits limits, con
     return found | given_up_;
 }
 
-/// Finds the coarse faces of all of a request's questions; false if more than `enough` of them may
-/// be near another surface.
+/// Finds the coarse faces for all of a request's questions; false if a search near another surface
+/// ended with `enough` of them.
 bool Refiner::gather(const RefineRequest& request, SplitLimits limits, std::uint32_t enough,
                      const Budgets& budgets, WorkCounters& work, FrameFault& found) noexcept
 {
@@ -185,7 +185,8 @@ bool Refiner::gather(const RefineRequest& request, SplitLimits limits, std::uint
     return is_all;
 }
 
-/// Lowers certificates by their questions' motion, and the coarsener's slack by the largest motion.
+/// Lowers certificates by their questions' motion, and adds the largest motion to the coarsener's
+/// travel.
 void Refiner::follow() noexcept
 {
     double farthest = 0.0;
@@ -241,7 +242,8 @@ void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& i
     memory.keep_m = question.keep_m;
 }
 
-/// Restarts an unfinished search whose bound no longer covers the needed distance.
+/// Drops an unfinished search whose bound, less the motion since, does not cover the needed
+/// distance.
 void Refiner::follow(double moved_m, double needed_m, UnfinishedSearch& unfinished) noexcept
 {
     unfinished.moved_m += moved_m;
@@ -251,7 +253,8 @@ void Refiner::follow(double moved_m, double needed_m, UnfinishedSearch& unfinish
     }
 }
 
-/// Finds the coarse faces within the target; the certificate covers the searched distance.
+/// Finds the coarse faces within target_of() the question, and sets its certificate to the distance
+/// that was searched.
 bool Refiner::gather(const RefineQuestion& question, std::uint32_t enough, const Budgets& budgets,
                      WorkCounters& work, FrameFault& found) noexcept
 {
@@ -334,7 +337,8 @@ void Refiner::gather_block(std::uint32_t index, const RefineQuestion& question) 
     }
 }
 
-/// Adds a coarse face with at least this distance minus its error, or leaves it for now.
+/// Adds a coarse face to the heap, or lowers the certificate if it is beyond the target. `lower_m`
+/// is a lower bound on its distance minus error.
 void Refiner::take(PrimId prim, double lower_m, const RefineQuestion& question) noexcept
 {
     if (lower_m <= target_of(question))
@@ -392,8 +396,8 @@ void Refiner::split_wanted(const RefineRequest& request, SplitLimits limits, std
     leave_at(own, std::min(pending_excess, heap_size_ > 0 ? heap_[0].excess_m : kInfinity));
 }
 
-/// The least excess of a face for which the open closure was begun; infinity if none of them waits
-/// within the target any more.
+/// Least excess of the faces for which the open closure was begun; infinity if none of them is
+/// coarse and within the target any more.
 double Refiner::excess_of_pending(const RefineRequest& request) const noexcept
 {
     const RecordId target = request.closure->target;
@@ -449,8 +453,8 @@ bool Refiner::try_advance(const Wanted& wanted, const RefineRequest& request, st
     return false;
 }
 
-/// Splits depth-first the records that must be split before `target`, then that; the stack is never
-/// deeper than the deepest record.
+/// Splits, depth first, the records that must be split before `target`, then `target`. The stack
+/// never exceeds the model's largest depth.
 Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
                                                     std::span<const RefineQuestion> own,
                                                     std::uint32_t limit, std::uint32_t frame,
@@ -561,7 +565,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     {
         if (is_filling_ && question.surface != nullptr)
         {
-            leave(question, 0.0); // The question is asked again, in one walk for all.
+            leave(question, 0.0); // The question searches again, in one walk for all splits.
             return;
         }
         const double nearest = (vertex - question.center_m).norm() * kRootRoundedDown - reach;
@@ -609,7 +613,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     }
 }
 
-/// Lower bounds on distances minus errors of a star's coarse faces.
+/// Writes lower bounds on distances minus errors of a star's coarse faces.
 void Refiner::bound_star_near_sphere(const RefineQuestion& question, const LooseFaces& coarse,
                                      StarBounds& lower_m) const noexcept
 {
@@ -623,7 +627,7 @@ void Refiner::bound_star_near_sphere(const RefineQuestion& question, const Loose
     }
 }
 
-/// The same near another surface; infinity beyond both the target and the certificate.
+/// The same near another surface; infinity for faces beyond both the target and the certificate.
 void Refiner::bound_star_near_surface(const RefineQuestion& question, const LooseFaces& coarse,
                                       StarBounds& lower_m) const noexcept
 {
@@ -666,8 +670,8 @@ double Refiner::lower_bound(PrimId prim, const RefineQuestion& question) const n
     return std::max(lower, from_surface - error + question.span_m);
 }
 
-/// Adds a face to the heap. If the heap is full, the face waits for the next frame. Faces that are
-/// only looked ahead for may take half of the heap, and dropping one is no fault.
+/// Adds a face to the heap. If the heap is full, the face waits for the next frame. Faces needed
+/// only ahead may take half of the heap, and dropping one is no fault.
 void Refiner::push(const Candidate& candidate, std::span<const RefineQuestion> questions) noexcept
 {
     TACTUS_ASSERT(!candidate.prim.is_none());
@@ -696,8 +700,8 @@ bool Refiner::is_current(const Candidate& candidate) const noexcept
     return !face.id.is_none() && face.state == candidate.state;
 }
 
-/// Holds a record. If the list is full, the record may be merged before its closure is complete and
-/// has to be split again.
+/// Holds a record: it is not merged before its closure is complete. If RefineScratch::held is full,
+/// it may be merged and must then be split again.
 void Refiner::hold(RecordId record, Closure& closure) noexcept
 {
     const std::uint32_t place = scratch_->free_held;

@@ -20,44 +20,45 @@
 namespace tactus
 {
 
-/// Limits on a frame's splits by the time that a request was served.
+/// Upper limits on the frame's total splits (WorkCounters::splits) while a request is served.
 struct SplitLimits
 {
     std::uint32_t now{0};
-    std::uint32_t later{0}; ///< Limit with splits that may wait, at most `now`.
+    std::uint32_t later{0}; ///< Limit for splits that may wait, at most `now`.
 };
 
-/// Moves one model's refined front to the requests of the pairs: first merges records that all of
-/// them left behind (Coarsener), then splits pair by pair what each lacks, nearest first, until its
-/// certificate holds or its share of the budget is spent.
+/// Moves one model's refined front to the requests of the pairs. First records that all pairs left
+/// behind are merged (Coarsener). Then each pair's missing faces are split, nearest first, until
+/// its certificate holds or its share of the budget is spent.
 ///
 /// A face is split while it is coarse and its distance minus its error is within a question's
-/// reach. If none is left every original face in reach is active: the sphere is certified. A little
-/// beyond the reach is refined as well (kLookAhead), so that a slow tool has frames without any
-/// work here, and the place where the tool will be (RefineQuestion::later_m). These splits come
-/// after all that are needed now, in order of need, and at a steady pace. Records split for a
-/// closure that the budget cut short are held: not merged until the closure is complete or its pair
-/// does not want it, so a small budget makes progress in every frame. A split for one pair reduces
-/// every other pair's certificate by the coarse faces that it made there.
+/// reach. If none is left, every original face in reach is active: the sphere is certified.
+/// Refinement goes on a little beyond the reach (kLookAhead), so that a slow tool has frames
+/// without work here, and where the tool will be (RefineQuestion::later_m). These splits come after
+/// all that are needed now, at a steady pace.
+///
+/// Records split for a closure that the budget cut short are held: not merged until the closure is
+/// complete or its pair does not want it. So a small budget makes progress in every frame. Coarse
+/// faces made by a split for one pair lower the certificates of others.
 ///
 /// Haptic thread. Every loop is bounded by the budgets and by limits.hpp.
 class Refiner
 {
 public:
-    /// `scratch` may serve other models as well and outlives them.
+    /// `scratch` must outlive the refiner; other models may use it, too.
     Refiner(VertexForest& forest, PageTable& pages, const AbTree& tree, RefineScratch& scratch,
             float quantum_m) noexcept;
 
-    /// Begins the frame with all requests to the model, the highest priority first. Follows the
-    /// questions and merges until `work` has `budgets.scanned` and `budgets.merges`. The requests
-    /// must stay until the frame ends.
+    /// Begins the frame with all requests to the model, the highest priority first; they must stay
+    /// until the frame ends. Lowers certificates by the questions' motion, then merges until `work`
+    /// reaches `budgets.scanned` or `budgets.merges`.
     void begin(std::span<const RefineRequest> requests, const Budgets& budgets,
                WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
-    /// Splits the faces that one of the frame's requests lacks until `work` has as many splits as
-    /// the limits allow, at most kMaxSplitsPerFrame. The tree's boxes are those of the last refit.
-    /// Pages whose records a closure needs are touched. Returns the obstacles, which matter while
-    /// the request is_late().
+    /// Splits the coarse faces that one of the frame's requests needs, until `work.splits` reaches
+    /// the limits, at most kMaxSplitsPerFrame. The tree must be refitted since the last change.
+    /// Touches the pages of the closures' records. Returns the causes of missing splits, which
+    /// count only if the request is still is_late().
     [[nodiscard]] FrameFault refine(const RefineRequest& request, SplitLimits limits,
                                     const Budgets& budgets, std::uint32_t frame,
                                     WorkCounters& work) noexcept TACTUS_NONBLOCKING;
@@ -68,23 +69,23 @@ public:
         full,     ///< A pool is full.
         complete, ///< All records are refined.
     };
-    /// Splits the model's records in order until `work` has `limit` splits. Certificates of
-    /// requests may shrink by it.
+    /// Splits the model's records in order until `work.splits` reaches `limit`. May lower requests'
+    /// certificates.
     [[nodiscard]] Progress fill(std::uint32_t records, std::uint32_t limit, std::uint32_t frame,
                                 WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
-    /// Share of the reach that is refined beyond it.
+    /// Distance beyond the reach that is refined as well, as a share of the reach.
     static constexpr double kLookAhead = 0.02;
 
-    /// Ends a closure that no request wants: its held records may be merged again.
+    /// Ends a closure: its held records may be merged again.
     void release(Closure& closure) noexcept TACTUS_NONBLOCKING;
 
-    /// Resets the refiner after the forest has left, with no closure open.
+    /// Resets the refiner; no record may be refined and no closure open.
     void forget_all() noexcept TACTUS_NONBLOCKING;
 
 private:
     using Candidate = RefineCandidate;
-    /// A record whose split a face with this excess waits for.
+    /// A record that must be split for a coarse face, and the face's excess (RefineCandidate).
     struct Wanted
     {
         RecordId record{};
@@ -142,7 +143,7 @@ private:
     Coarsener coarsener_;
     double quantum_m_;
     RefineScratch* scratch_;
-    std::span<Candidate> heap_; ///< Memory of the scratch, like the two below.
+    std::span<Candidate> heap_; ///< Spans of the scratch, like the two below.
     std::span<RecordId> stack_;
     std::span<RecordId> done_;
     std::uint32_t heap_size_{0};
@@ -151,11 +152,11 @@ private:
     std::uint32_t questions_{0};              ///< Number of their questions.
     std::size_t question_count_{0};
     std::uint32_t next_record_{0}; ///< Records before it are done by fill().
-    /// fill() is running: its splits do not walk another surface for each question.
+    /// True in fill(), whose splits do not walk another surface for each question.
     bool is_filling_{false};
-    /// Splits in this refine() whose faces may still be measured against another surface.
+    /// Splits of this refine() that may still measure their faces against another surface.
     std::uint32_t stars_left_{0};
-    /// Faults for lack of capacity since refine() began.
+    /// Faults of full lists since refine() began.
     FrameFault given_up_{FrameFault::none};
 };
 

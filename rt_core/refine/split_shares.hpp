@@ -14,13 +14,14 @@ namespace tactus
 
 /// Shares one frame's splits among the requests that wait for some.
 ///
-/// The higher-priority class takes what it can use, except an eighth of all, rounded up, for each
-/// lower class with a waiting request. Within a class each request in turn may take an equal part
-/// of what the class has left, and, if there is enough for all, its earlier savings: a request with
-/// short bursts is not behind others that always need everything. So with at least eight splits a
-/// frame each of n requests of a class may take one in ceil(n / ceil(splits / 8)) frames,
-/// independent of the others' needs, if requests that got nothing for longest go first
-/// (docs/accuracy.md).
+/// Classes take splits in order of priority, each as many as it can use, except an eighth of all,
+/// rounded up, for each lower class with a waiting request. Within a class each request in turn may
+/// take an equal part of what the class has left and, if there is enough for all, its savings from
+/// earlier frames. So a request with short bursts is not behind others that always need everything.
+///
+/// With at least eight splits a frame, each of n requests of a class may take one in ceil(n /
+/// ceil(splits / 8)) frames, independent of the others' needs, if requests that got nothing for
+/// longest go first (docs/accuracy.md).
 class SplitShares
 {
 public:
@@ -32,13 +33,13 @@ public:
     /// Splits that one request may take.
     struct Share
     {
-        std::uint32_t equal{0}; ///< Its equal part.
-        std::uint32_t limit{0}; ///< Total splits of the frame up to which it may go, including its
-                                ///< savings.
+        std::uint32_t equal{0}; ///< Equal part of the class's splits.
+        /// Upper limit on the frame's total splits, including the request's savings.
+        std::uint32_t limit{0};
     };
 
-    /// Share of the next request of a class, classes in order, which has `saved` splits, in a frame
-    /// that has done `done`.
+    /// Share of the next waiting request of class `of`; calls go through the classes in order.
+    /// `saved` are the request's savings, and `done` is the frame's number of splits so far.
     [[nodiscard]] Share take(PriorityClass of, std::uint32_t saved, std::uint32_t done) noexcept
     {
         const auto own = static_cast<std::size_t>(of);
@@ -56,14 +57,15 @@ public:
         return {equal, done + equal + std::min(saved, free - equal - others)};
     }
 
-    /// Savings of a request after a frame in which it used `used` splits; at most half of a frame's
-    /// splits, or it could delay all others for long.
+    /// Savings of a request after a frame in which it had a share of `equal` splits and used
+    /// `used`. At most half of a frame's splits, or it could delay all others for long.
     [[nodiscard]] std::uint32_t save(std::uint32_t saved, std::uint32_t equal,
                                      std::uint32_t used) const noexcept
     {
         return std::min(saved + equal - std::min(saved + equal, used), splits_ / 2);
     }
-    /// Savings of a request that needed none: an eighth more.
+    /// Savings of a request after a frame in which it needed no split: an eighth of a frame's
+    /// splits more.
     [[nodiscard]] std::uint32_t save_all(std::uint32_t saved) const noexcept
     {
         return save(saved, (splits_ + 7) / 8, 0);

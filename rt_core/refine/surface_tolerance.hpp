@@ -11,15 +11,16 @@
 namespace tactus
 {
 
-/// Largest error of a face that counts as the surface for one pair: the least allowed, or more, up
-/// to a limit, if pools or budgets don't suffice for all faces in reach. It grows within some
-/// frames and shrinks slowly when there is capacity again, so that it doesn't oscillate.
+/// Largest error of faces that count as the surface for one pair. It exceeds the least allowed
+/// value, up to a limit, while pools or budgets don't suffice for all faces in reach. It grows
+/// after a few frames and shrinks slowly when there is capacity again, so that it doesn't
+/// oscillate.
 ///
 /// Haptic thread. The same frames give the same tolerances.
 class SurfaceTolerance
 {
 public:
-    /// Codes of the least and the most; both 0: all must be exact.
+    /// Least and largest allowed tolerance; both 0: all faces must be exact.
     struct Range
     {
         ErrorCode least{0};
@@ -31,7 +32,7 @@ public:
         enough,  ///< A finer surface would fit, too.
         fitting, ///< The surface fits, or none is in reach.
         late,    ///< Splits are still missing.
-        short_,  ///< Some of it did not fit.
+        short_,  ///< Part of the surface did not fit.
     };
 
     /// Updates the tolerance, once per frame; least <= most. `is_served` is true if the last frame
@@ -61,11 +62,12 @@ public:
 
     /// Tolerance of refinement.
     [[nodiscard]] ErrorCode code() const noexcept { return code_; }
-    /// Tolerance of queries: the same, or, until a finer surface is complete, twice the last one,
-    /// since faces that are split on the way may be coarser than that.
+    /// Tolerance of queries: code(), or up to twice the last one until a finer surface is complete.
+    /// Faces that appear on the way may be that coarse.
     [[nodiscard]] ErrorCode felt() const noexcept { return felt_; }
 
-    /// Largest growth of the surface by one finer step, which must fit as well.
+    /// Largest factor by which the number of faces grows with one finer step of the tolerance;
+    /// Room::enough means that so many fit.
     static constexpr double kFinerGrowth = 1.5;
 
 private:
@@ -74,13 +76,13 @@ private:
         return static_cast<ErrorCode>(std::min<std::uint32_t>(code + kGrowth, range.most));
     }
 
-    /// Late frames until the tolerance doubles: a front that only lags has caught up by then. A
-    /// short_ frame counts as the number below: merges caused by the previous step are done after
-    /// six.
+    /// Room::late frames after which the tolerance doubles; a front that only lags has caught up by
+    /// then. A Room::short_ frame counts kShortWeight times: merges of the previous step are done
+    /// after six.
     static constexpr std::uint32_t kPatience = 24;
     static constexpr std::uint32_t kShortWeight = 4;
     static constexpr std::uint32_t kGrowth = 4;
-    /// Consecutive frames with capacity until the tolerance shrinks.
+    /// Consecutive Room::enough frames after which the tolerance shrinks by one code.
     static constexpr std::uint32_t kCalm = 30;
 
     ErrorCode code_{0};

@@ -45,8 +45,8 @@ std::uint32_t WorkPace::splits_of(std::uint32_t budget) const noexcept
     return std::clamp(steady(mean_), least, most_of(budget, least));
 }
 
-/// Splits and merges together are limited to nine eighths of the recent total, with one merge per
-/// split.
+/// Limits the last frame's splits plus this frame's merges to nine eighths of twice the mean: in
+/// the long run each split is merged.
 std::uint32_t WorkPace::merges_of(std::uint32_t budget) const noexcept
 {
     const std::uint32_t least = (budget + 15) / 16;

@@ -18,17 +18,17 @@ public:
     /// Records the splits of a frame.
     void count(std::uint32_t splits) noexcept TACTUS_NONBLOCKING;
 
-    /// Number of splits, of a budget of at most a million, up to which a frame does splits that may
-    /// wait: at least an eighth of the budget, so that the first frames of a motion have some, and
-    /// at most two fifths.
+    /// Number of the frame's splits up to which splits that may wait are done, of a budget of at
+    /// most a million. At least an eighth of the budget, so that the first frames of a motion have
+    /// some, and at most two fifths.
     [[nodiscard]] std::uint32_t splits_of(std::uint32_t budget) const noexcept TACTUS_NONBLOCKING;
 
-    /// The same for merges, which make room for splits: fewer after a frame that split many, at
-    /// least a sixteenth.
+    /// Number of merges that a frame may do, of the same kind of budget. Fewer after a frame with
+    /// many splits; at least a sixteenth of the budget.
     [[nodiscard]] std::uint32_t merges_of(std::uint32_t budget) const noexcept TACTUS_NONBLOCKING;
 
 private:
-    std::uint32_t mean_{0}; ///< Moving average of splits per frame, fixed point.
+    std::uint32_t mean_{0}; ///< Mean of splits per frame, in 1/256.
     std::uint32_t last_{0}; ///< Splits of the last frame.
 };
 

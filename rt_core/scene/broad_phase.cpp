@@ -26,7 +26,8 @@ double size_of(const Vec3& place) noexcept
     return std::max({std::abs(place.x()), std::abs(place.y()), std::abs(place.z())});
 }
 
-/// Lower bound on the distance of both, from the computed squared distance.
+/// Lower bound on the distance of a place from a sphere; `square` is the computed squared distance
+/// from its centre.
 double proven_gap(const Vec3& place, const Sphere& sphere, double square) noexcept
 {
     const double length = std::sqrt(square);
@@ -178,7 +179,8 @@ void BroadPhase::walk(ToolRange& tool) noexcept
     tool.waited = 0;
 }
 
-/// Searches a group. Objects farther than the second of those that are not listed change nothing.
+/// Searches a group of objects. An object farther than the second nearest unlisted one changes
+/// nothing.
 void BroadPhase::search(const Group& group, std::uint32_t first, const ToolRange& tool,
                         Findings& found) noexcept
 {
@@ -218,7 +220,7 @@ void BroadPhase::search(const Group& group, std::uint32_t first, const ToolRange
     looked_at_ += kGroup;
 }
 
-/// Lists the nearest objects by their numbers; at least one if there is any.
+/// Lists the nearest objects, sorted by number; at least one if there is any.
 void BroadPhase::keep_nearest(ToolRange& tool, Findings& found) noexcept
 {
     const std::span<Candidate> listed = scratch_.first(found.listed);

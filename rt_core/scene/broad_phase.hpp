@@ -21,9 +21,9 @@ namespace tactus
 /// their numbers, below the capacities.
 ///
 /// A walk over all objects gives a tool a list of near objects and its clearance to the others.
-/// Motion of the tool, and objects that approach, reduce the clearance. Once it is below the tool's
-/// need there is another walk, for tools that wait longest first and at most kBroadWalks per frame.
-/// So a tool at rest among objects at rest costs one comparison, for any number of objects
+/// Motion of the tool, and objects that approach, reduce the clearance. If it falls below the
+/// tool's `near_m`, another walk follows; tools that wait longest come first, at most kBroadWalks a
+/// frame. So a tool at rest among objects at rest costs one comparison, for any number of objects
 /// (Lipschitz: a distance shrinks by no more than its two ends move).
 ///
 /// Objects are kept in groups of kGroup by their numbers, each with a box: if consecutive numbers
@@ -39,8 +39,8 @@ public:
     void place(std::uint32_t object, const Sphere& sphere) noexcept TACTUS_NONBLOCKING;
     void remove(std::uint32_t object) noexcept TACTUS_NONBLOCKING;
 
-    /// Sets a tool's place in this frame; its list must hold all objects within `near_m` >= 0 of
-    /// its centre.
+    /// Sets a tool's centre in this frame, and the distance `near_m` >= 0 within which its list
+    /// should hold all objects.
     void look(std::uint32_t tool, const Vec3& center_m, double near_m) noexcept TACTUS_NONBLOCKING;
     void forget(std::uint32_t tool) noexcept TACTUS_NONBLOCKING;
     /// Walks for tools whose clearance is used up; called after look() for each tool.
@@ -73,12 +73,12 @@ private:
     {
         Vec3 low{kInfinity, kInfinity, kInfinity}; ///< Box of the spheres.
         Vec3 high{-kInfinity, -kInfinity, -kInfinity};
-        bool is_stale{false}; ///< A sphere has moved or was removed.
+        bool is_stale{false}; ///< True if a sphere changed since the box was fitted.
     };
     struct ToolRange
     {
         bool is_resident{false};
-        bool was_full{false}; ///< The last walk found more than fits.
+        bool was_full{false}; ///< The last walk found more than kMaxNear.
         std::uint32_t waited{0};
         Vec3 center_m{0.0, 0.0, 0.0};
         double near_m{0.0};
@@ -94,9 +94,9 @@ private:
     struct Findings
     {
         double wide_m{0.0};        ///< Distance up to which objects are listed.
-        std::uint32_t listed{0};   ///< Number in scratch_.
+        std::uint32_t listed{0};   ///< Number of listed objects, in scratch_.
         Candidate next{kInfinity}; ///< Nearest unlisted object.
-        double after_m{kInfinity}; ///< Lower bound for all further ones.
+        double after_m{kInfinity}; ///< Lower bound on the gaps of further objects.
     };
 
     [[nodiscard]] bool lacks_proof(const ToolRange& tool) const noexcept;

@@ -13,7 +13,8 @@ namespace tactus
 namespace
 {
 
-/// Deviation up to which a rotation keeps its bits: as exact as kPoseRounding assumes.
+/// Deviation of R^T R from the identity up to which a rotation keeps its bits; kPoseRounding
+/// assumes it.
 constexpr double kRounded = 2e-15;
 
 } // namespace

@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// True if an object can have this pose; false for NaN.
+/// True if the pose is a rotation within the ranges of limits.hpp; false for NaN.
 [[nodiscard]] bool is_sound(const ObjectPose& pose) noexcept TACTUS_NONBLOCKING;
 
 /// An object of the scene.
@@ -25,7 +25,7 @@ struct Object
     std::uint32_t came_frame{0};  ///< Frame in which it was added; 0 at start.
     std::uint32_t moved_frame{0}; ///< Frame in which it was last added or moved.
     bool is_resident{false};
-    bool was_here{false}; ///< The number has been used, last with `generation`.
+    bool was_here{false}; ///< The number was used before, last with `generation`.
 };
 
 /// The objects of a scene by their numbers, and the checks of their changes. Haptic thread; a
@@ -39,13 +39,13 @@ public:
     {
     }
 
-    /// Reason why an object's change is refused; none if it can be made. `is_shown` is true for
-    /// each model that an object may show.
+    /// Reason why an object's change is refused; none if it can be made. `is_shown` has an entry
+    /// for each model, true if objects may show it.
     [[nodiscard]] std::optional<ChangeRefusal>
     find_refusal(const SceneChange& change,
                  std::span<const bool> is_shown) const noexcept TACTUS_NONBLOCKING;
 
-    /// Applies a change that was not refused; `origin_m` is that of the object's model.
+    /// Applies a change that was not refused; `origin_m` is ModelHeader::origin_m() of its model.
     void make(const SceneChange& change, const Vec3& origin_m,
               std::uint32_t frame) noexcept TACTUS_NONBLOCKING;
 

@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// Share of the reach below which an approach needs no second place.
+/// Length of an approach, as a share of the reach, up to which its end is not refined separately.
 constexpr double kLeastApproach = 0.1;
 
 } // namespace

@@ -16,11 +16,11 @@ struct ToolPlacement
     Similarity place; ///< Pose of the tool's frame.
     /// Distance from the core within which the surface must be exact for this frame's force.
     double reach_m{0.0};
-    Vec3 approach_m{0.0, 0.0, 0.0}; ///< Expected displacement until a front is refined, 10 ms.
+    Vec3 approach_m{0.0, 0.0, 0.0}; ///< Expected displacement in 10 ms, the time of refinement.
 };
 
-/// Pose of a pair's tool before its object, and the pair's range: the basis of its refinement,
-/// prefetching and query. Model frame.
+/// Core of a pair's tool in its object's model frame, and the range round it that matters: the
+/// basis of refinement, prefetching and query.
 ///
 /// The distance from a tool to a surface changes by no more than the tool moves, so a proven L
 /// stays useful: while L minus the motion is beyond the pair's range, the pair is asleep and no
@@ -32,25 +32,26 @@ public:
     /// forth changes nothing.
     static constexpr double kKeepFactor = 1.25;
 
-    /// Places the tool for this frame.
+    /// Sets the tool's place relative to the object, and the pair's range, for this frame.
     void look(const ToolSpec& tool, const ToolPlacement& placement,
               const ObjectPose& pose) noexcept TACTUS_NONBLOCKING;
     /// Keeps the pair awake even if the last distance proves that nothing is in range.
     void wake() noexcept { is_asleep_ = false; }
-    /// Keeps a query's answer for the present place.
+    /// Keeps a query's answer, which holds for the present place.
     void remember(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
-    /// Core of the tool at its proxy.
+    /// Core of the tool at its proxy, in the model's frame.
     [[nodiscard]] const PlacedCore& core() const noexcept { return core_; }
     [[nodiscard]] const CoreCover& cover() const noexcept { return cover_; }
     [[nodiscard]] double reach_m() const noexcept { return reach_m_; }
     [[nodiscard]] const Vec3& approach_m() const noexcept { return approach_m_; }
-    /// Proven out of range; no stage needs to check the pair.
+    /// True if the pair is proven out of range, so that no stage has to check it.
     [[nodiscard]] bool is_asleep() const noexcept { return is_asleep_; }
-    /// True if the place that the tool approaches is worth refining beside its present one.
+    /// True if the approach is long enough to refine its end beside the present place.
     [[nodiscard]] bool looks_ahead() const noexcept TACTUS_NONBLOCKING;
-    /// True if a surface is certainly so near that the front moves along with the tool, so that
-    /// needs ahead arrive gradually. A first contact needs all at once.
+    /// True if the last answer and the motion since prove a surface within kKeepFactor reaches. The
+    /// front then moves along with the tool, and needs ahead arrive gradually; a first contact
+    /// needs all at once.
     [[nodiscard]] bool is_near_surface() const noexcept TACTUS_NONBLOCKING;
 
     [[nodiscard]] bool has_known() const noexcept { return has_known_; }
@@ -67,7 +68,7 @@ private:
     bool is_asleep_{false};
     bool has_known_{false};
     PlacedCore known_core_; ///< Core for which `known_` was answered.
-    double motion_m_{0.0};  ///< Motion since then.
+    double motion_m_{0.0};  ///< Motion of the core since then.
     DistanceAnswer known_;
 };
 

@@ -21,7 +21,7 @@ namespace tactus
 struct BaseFace
 {
     std::array<VertexId, 3> corners{};
-    std::uint32_t bucket{0}; ///< rank >> 3 in the left-full median order.
+    std::uint32_t bucket{0}; ///< Rank in the left-full median order, >> 3.
     ErrorCode error{0};
 };
 
@@ -41,7 +41,7 @@ struct BaseMesh
     std::span<std::uint32_t> next;
 
     [[nodiscard]] BaseView view() const noexcept { return {positions_m, faces}; }
-    /// One mesh of several in these spans, in its own cells from `first` on.
+    /// The part of these spans that one of several meshes has: its cells from `first` on.
     [[nodiscard]] BaseMesh part(std::uint32_t first, const ModelCounts& counts) const noexcept
     {
         return {positions_m.subspan(first, counts.base_vertices),
@@ -54,7 +54,7 @@ struct BaseMesh
     }
 };
 
-/// Number of bits of each field of a coded base mesh, by its largest value.
+/// Bit widths of a coded base mesh's fields, from their largest values.
 struct BaseLayout
 {
     std::array<std::uint32_t, 3> axis_bits{};

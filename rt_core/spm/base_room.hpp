@@ -13,7 +13,7 @@
 namespace tactus
 {
 
-/// Taken cells of the base meshes' memory: each resident model has one range of them. Haptic
+/// Hands out cells of the base meshes' memory: each resident streamed model has one range. Haptic
 /// thread; at most kMaxModels steps a call.
 class BaseRoom
 {
@@ -64,7 +64,7 @@ private:
 
     std::uint32_t cells_{0};
     std::uint32_t used_{0};
-    StaticVector<Range, kMaxModels> taken_; ///< Sorted by place.
+    StaticVector<Range, kMaxModels> taken_; ///< Sorted by `first`.
 };
 
 } // namespace tactus

@@ -78,7 +78,7 @@ Result<Done, SpmRefusal> parse_chunk(std::span<const std::byte> bytes, const Mod
         }
         page.records[place] = waiting_form(coded);
     }
-    return decoder.has_observed_energy() ? Result<Done, SpmRefusal>(SpmRefusal::trailing_bytes)
+    return decoder.has_bytes_left() ? Result<Done, SpmRefusal>(SpmRefusal::trailing_bytes)
                                          : Done{};
 }
 

@@ -11,8 +11,8 @@
 namespace tactus
 {
 
-/// Coder version 3: CodedRecords in a range code (rt_core/spm/chunk_grammar.hpp), then a checksum.
-/// The caller knows the chunk's number and its count of records.
+/// A chunk in coder version 3: CodedRecords in a range code (rt_core/spm/chunk_grammar.hpp), then a
+/// checksum. The caller knows the chunk's number and its count of records.
 
 /// Reads the coded chunk `id`: each record of `page` is then the waiting_form() of the chunk's
 /// record, for the linker to resolve; unused records of a last, shorter page are cleared. Needs
@@ -22,7 +22,7 @@ namespace tactus
                                                    const ModelHeader& header, ChunkId id,
                                                    Page& page) noexcept;
 
-/// CRC-32C of a chunk's code, with the chunk's number behind it.
+/// CRC-32C of a chunk's code followed by the chunk's number.
 [[nodiscard]] std::uint32_t chunk_checksum(std::span<const std::byte> code, ChunkId id) noexcept;
 
 /// Number of records in a chunk: 64 except in the last one.

@@ -14,7 +14,8 @@
 namespace tactus
 {
 
-/// Probability of a 0 bit in units of 2^-12; adapts by 1/32 of the distance with each bit.
+/// Probability of a 0 bit in units of 2^-12. Each coded bit moves it by 1/32 of its distance from
+/// the certain value.
 using Probability = std::uint16_t;
 
 inline constexpr std::uint32_t kProbabilityBits = 12;
@@ -53,9 +54,9 @@ struct ChunkModel
 {
     static constexpr std::size_t kWidthGroups = 12;
 
-    /// Index: anchors, other owners.
+    /// First index: 0 for anchors, 1 for other owners.
     std::array<std::array<std::array<Probability, 16>, 3>, 2> tier_step;
-    /// Index: as above; then within the record's own tier, in a coarser one.
+    /// First index as above; second: 0 within the record's own tier, 1 in a coarser one.
     std::array<std::array<SignedModel, 2>, 2> owner_step;
     std::array<std::array<Probability, 8>, 2> place;
     std::array<std::array<Probability, 4>, 8> corner;
@@ -64,13 +65,15 @@ struct ChunkModel
     Probability has_both_sides;
     Probability has_only_second;
     std::array<std::array<Probability, 4>, 2> is_named;
-    /// Index: in the plane of the ring, along its normal; then the width of the previous residual.
+    /// First index: 0 in the plane of the ring, 1 along its normal; second: width of the last
+    /// residual.
     std::array<std::array<std::array<Probability, 32>, kWidthGroups>, 2> residual_width;
     std::array<std::array<std::array<Probability, 4>, 32>, 2> residual_next_bits;
     std::array<Probability, 2> residual_negative;
     std::array<Probability, 4> is_exact;
     SignedModel largest_error;
-    /// Index: A and B, fan faces; then the error of the previous face: none, exact, other.
+    /// First index: 0 for A and B, 1 for fan faces; second: the previous face's error, 0 if there
+    /// is none, 1 exact, 2 other.
     std::array<std::array<std::array<Probability, 16>, 3>, 2> error_below;
     std::array<SignedModel, 2> bucket_step;
     Probability has_none; ///< Used for records without both sides.
@@ -96,7 +99,7 @@ inline constexpr std::uint32_t kExactBelow = 15; ///< Value for an error of 0.
     const std::uint32_t error = largest > 2 * steps ? largest - 2 * steps : 1U;
     return static_cast<ErrorCode>(steps == kExactBelow ? 0U : error);
 }
-/// The error as a chunk can code it: not less, and exact only if it was.
+/// The error as a chunk stores it: at least `error`, and 0 only for 0.
 [[nodiscard]] constexpr ErrorCode rounded_error(ErrorCode error, ErrorCode largest) noexcept
 {
     return error_below(largest, steps_below(error, largest));
@@ -117,7 +120,7 @@ public:
         const Tier own = tier_of(first);
         for (std::uint32_t tier = 0; tier < kTiers; ++tier)
         {
-            // Both loops run over the same area in the same order.
+            // All tiers cover the surface in the same order, so the proportional record is near.
             const Tier& other = kAllTiers[tier];
             const std::uint64_t ahead = first.value - own.first;
             last_[tier] = static_cast<std::uint32_t>(
@@ -135,7 +138,7 @@ public:
         code_buckets(record);
     }
 
-    /// False once a number led out of a coarser tier than the first, or to an error without a code.
+    /// False once a decoded number named a tier before the first, or an error without a code.
     [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
 
     /// The present probabilities; used to learn the initial ones.
@@ -199,7 +202,8 @@ private:
         return node & (kSize - 1);
     }
 
-    /// The bits below the first one of a number that is `width` bits wide.
+    /// Codes the bits below the highest one of a number that is `width` bits wide; returns the
+    /// number.
     std::uint32_t code_rest(std::array<Probability, 4>& next_bits, std::uint32_t width,
                             std::uint32_t value) noexcept
     {
@@ -212,7 +216,7 @@ private:
         const std::uint32_t modelled = width - 1 < 2 ? width - 1 : 2;
         for (std::uint32_t i = 0; i < modelled; ++i)
         {
-            // Node 1 first, then 2 or 3.
+            // The first bit uses node 1, the second node 2 or 3.
             const std::uint32_t bit =
                 coder_.code_bit(next_bits[number], (value >> (width - 2 - i)) & 1U);
             number = number << 1U | bit;
@@ -273,7 +277,7 @@ private:
         }
     }
 
-    /// Sides, if not both: none, A or B.
+    /// Codes CodedRecord::sides if A and B don't both exist.
     std::uint8_t code_side(std::uint32_t sides) noexcept
     {
         if (coder_.code_bit(model_.has_none, sides == 0 ? 1 : 0) != 0)
@@ -360,7 +364,7 @@ private:
         }
     }
 
-    /// The largest error, then how far the others are below it, in steps of two codes.
+    /// Codes the largest error, then how far the others are below it, in steps of two codes.
     void code_errors(CodedRecord& record) noexcept
     {
         ErrorCode largest = 0;

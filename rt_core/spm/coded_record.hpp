@@ -20,12 +20,12 @@ namespace tactus
 /// (rt_core/spm/star_resolver.hpp).
 struct CodedRecord
 {
-    /// The record that changed a fan face last.
+    /// Source of a fan face's state: the record that changed the face last, or its base state.
     struct Owner
     {
         enum class Kind : std::uint8_t
         {
-            /// Derived from the edge to the previous face; never for the anchor.
+            /// Not coded: derived from the edge to the previous face. Never for the anchor.
             derived,
             record, ///< `value` is a record.
             base    ///< `value` is a base face in its base state.
@@ -42,7 +42,7 @@ struct CodedRecord
     std::array<Owner, kMaxFanFaces - 1> others{};
     /// v minus its prediction (RingPrediction).
     std::array<std::int32_t, 3> residual{};
-    /// Bucket of A minus the anchor's, or of B if there is no A; bucket of B minus A's.
+    /// [0]: bucket of A minus the anchor's. [1]: bucket of B minus A's, or the anchor's without A.
     std::array<std::int32_t, 2> bucket_step{};
     std::array<ErrorCode, kMaxStarFaces> error{}; ///< Same as in VsplitRecord.
     std::uint8_t place{0};                        ///< Place of the anchor in its owner's star.

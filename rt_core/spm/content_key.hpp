@@ -19,8 +19,8 @@ enum class ContentKind : std::uint8_t
     header = 3, ///< Only used on the wire.
 };
 
-/// Names one piece within one model: its index page or chunk number; 0 for the base mesh. On the
-/// wire, which splits base mesh and header, the part's number.
+/// Names one piece within one model. `number` is that of the index page or chunk, and 0 for the
+/// base mesh. On the wire, which splits base mesh and header, it is the part's number.
 struct ContentKey
 {
     ContentKind kind{ContentKind::base};

@@ -71,11 +71,11 @@ struct HeaderFields
     std::array<std::uint32_t, 3> extent_quanta{}; ///< Largest coordinate; the smallest is 0.
     std::uint32_t max_depth{0};                   ///< Largest dependency depth of a record.
     std::array<double, 3> origin_m{};             ///< Place of (0, 0, 0) in the source's frame.
-    double quantisation_m{0.0};       ///< Largest |source - grid| of a vertex, up to the diagonal.
-    std::uint32_t source_vertices{0}; ///< Vertices of the quantised mesh.
+    double quantisation_m{0.0};                   ///< Largest shift of a vertex to the grid.
+    std::uint32_t source_vertices{0};             ///< Vertices of the quantised mesh.
     std::uint32_t source_faces{0};
     std::uint32_t rounds{0};             ///< Rounds of collapses.
-    std::uint32_t max_error_quanta{0};   ///< Largest bound of any face state, rounded up.
+    std::uint32_t max_error_quanta{0};   ///< Largest error bound of a face, rounded up.
     std::uint32_t region_cell_quanta{0}; ///< Edge of a region; a power of two.
     std::array<std::uint32_t, 3> region_grid{};
     std::uint32_t occupied_regions{0};
@@ -154,8 +154,7 @@ private:
     std::span<const std::byte> regions_;
 };
 
-/// Sizes of the parts that follow the fixed fields: index entries, region bits, root hash,
-/// checksum.
+/// Sizes of the header's last two parts, behind fixed fields, index entries and region bits.
 inline constexpr std::size_t kRootHashBytes = 32;
 inline constexpr std::size_t kChecksumBytes = 4;
 /// Size of a whole header, including the checksum.

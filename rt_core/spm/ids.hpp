@@ -13,17 +13,18 @@
 namespace tactus
 {
 
-/// One vsplit record; ordered by tier (ratio 4), then Morton code.
+/// Number of a vsplit record: by tier, then along a Morton curve.
 using RecordId = StrongId<struct RecordTag>;
-/// 64 consecutive records.
+/// Number of a chunk, which is 64 consecutive records.
 using ChunkId = StrongId<struct ChunkTag>;
-/// 64 consecutive chunks of the influence-box index.
+/// Number of an index page, which covers 64 consecutive chunks.
 using IndexPageId = StrongId<struct IndexPageTag>;
-/// Base vertices first, then one vertex per record.
+/// Number of a vertex: base vertices first, then one per record.
 using VertexId = StrongId<struct VertexTag>;
-/// Base faces first, then two per record: 2 x record + side. The same in every run.
+/// Number of a face: base faces first, then two per record, 2 x record + side. The same in every
+/// run.
 using FaceId = StrongId<struct FaceTag>;
-/// One cell of the header's regular partition.
+/// Number of a cell of the header's regular partition.
 using RegionId = StrongId<struct RegionTag>;
 
 inline constexpr std::uint32_t kRecordsPerChunkLog2 = 6;

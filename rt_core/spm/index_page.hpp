@@ -68,14 +68,15 @@ struct QuantumSphere
 [[nodiscard]] QuantumBox box_of(const IndexPage& page, const QuantumBox& page_box,
                                 std::size_t chunk) noexcept TACTUS_NONBLOCKING;
 
-/// Data of a chunk on the transport side, besides its box.
+/// Size and hash of a coded chunk, for the transport thread.
 struct ChunkEntry
 {
     std::uint16_t coded_bytes{0};
     ContentHash hash{};
 };
 
-/// Quanta per step of an index page's boxes along an axis: the least that spans it in 16 bits.
+/// Length, in quanta, of a step of an index page's boxes along an axis: the least with which 16
+/// bits reach from `low` to `high`.
 [[nodiscard]] constexpr std::uint32_t index_step(std::int32_t low, std::int32_t high) noexcept
 {
     TACTUS_ASSERT(low <= high);

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Relaxed order, see load_next(): the inbox publishes it together with the linked bit.
+/// Relaxed order, see load_next(): SlotQueues::arrived publishes it together with the linked bit.
 void store_next(std::uint32_t& next, RecordId id) noexcept
 {
     std::atomic_ref<std::uint32_t>(next).store(id.value, std::memory_order_relaxed);
@@ -89,7 +89,7 @@ void Linker::release_page(std::uint32_t slot) noexcept
     {
         stop_waiting((slot << kRecordsPerChunkLog2) + place);
     }
-    // The loop below finds no dependent in this page.
+    // From here on seat_of() finds no record of this page: the loop below skips its own records.
     pool_->slot_of_.erase(PagePool::first_key(owner_) + chunk.value);
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
@@ -251,8 +251,8 @@ bool Linker::is_free_for(RecordId id, const VsplitRecord& record) const noexcept
     return true;
 }
 
-/// Sets a linked record's missing `next` after one of its owners returned, and waits for the next
-/// absent owner.
+/// Sets the pending `next` of a linked record's owners after one of them returned, and waits for
+/// the next absent owner.
 void Linker::mend_next(Seat seat) noexcept
 {
     const VsplitRecord& record = record_at(seat);
@@ -270,7 +270,7 @@ void Linker::mend_next(Seat seat) noexcept
         }
         else if (std::uint32_t& next = next_of(record.star[2 + i], state); next == kNextPending)
         {
-            store_next(next, id_of(seat)); // Otherwise it is taken, by this record or a rival.
+            store_next(next, id_of(seat)); // Otherwise a record has it.
         }
     }
     if (!missing.is_none())
@@ -339,7 +339,7 @@ void Linker::let_dependents_wait(Seat leaving) noexcept
         const Seat dependent = seat_of({next});
         if (dependent == kNoSeat || !is_linked_at(dependent) || waiting_[dependent].is_in_list())
         {
-            // Absent, or it checks all its owners when the one it waits for returns.
+            // The dependent is absent, or waits for an owner and checks all of them later.
             continue;
         }
         wait_for(dependent, id);

@@ -17,7 +17,7 @@ namespace tactus
 
 class Linker;
 
-/// Data of linking for each page slot of all models: about 2.4 KB. Transport thread.
+/// Memory of all models' linkers, about 2.4 KB per page slot. Transport thread.
 class LinkPool
 {
 public:
@@ -36,7 +36,7 @@ private:
     /// A record by its place in the page slots: slot * 64 + place.
     using Seat = std::uint32_t;
     static constexpr Seat kNoSeat = 0xFFFF'FFFFU;
-    /// A quarter of the records that may wait.
+    /// Lists per page slot: one for four records that may wait.
     static constexpr std::size_t kListsPerPage = 16;
     static constexpr Seat kNowhere = 0xFFFF'FFFEU;
     static constexpr std::uint32_t kNotOwing = 0xFFFF'FFFFU;
@@ -54,7 +54,7 @@ private:
         ChunkId chunk{};
         std::uint32_t owner{0};
         static_assert(kRecordsPerChunk <= 64);
-        std::uint64_t linked{0}; ///< One bit per record.
+        std::uint64_t linked{0}; ///< Linked records, one bit each.
         std::uint64_t told{0};   ///< Bits of `linked` reported to the haptic thread.
     };
 
@@ -73,16 +73,16 @@ private:
 /// A record is defined in terms of the records that last changed its fan faces, and of those that
 /// brought its vertices. When these are linked it is resolved (StarResolver), and `next` of each
 /// fan face's owner is set to it. Records whose dependencies are absent wait, parsed, in their
-/// page. The haptic thread learns of linked records through the inbox only: with the page's
-/// arrival, and by updates afterwards (try_take_update()).
+/// page. The haptic thread learns of linked records through SlotQueues::arrived only: with the
+/// page's arrival, and by updates afterwards (try_take_update()).
 ///
 /// A waiting record is in the list of one awaited record, the first of its dependencies that isn't
 /// linked; when that is linked, the list is checked again. So a record is checked at most once for
 /// each of its dependencies, regardless of other resident records.
 ///
 /// A page that returns after an eviction has all its `next` pending again. Linked records of other
-/// pages that were named there wait from the eviction on, and set them again: at the latest when
-/// all their dependencies are back, without which they can't be split.
+/// pages that were named there wait from the eviction on and set them again, at the latest when all
+/// their dependencies are back; they can't be split before.
 ///
 /// Refused permanently: a walk that finds no face, a vertex off the grid, a fan face that is exact
 /// or that another record splits (the first one keeps it). A linked record names only records
@@ -94,16 +94,16 @@ public:
     Linker(LinkPool& pool, std::uint32_t owner, const ModelHeader& header,
            PageSlots slots) noexcept;
 
-    /// Sets the base mesh of a model that is added, or none for a removed one. No page is resident
-    /// then.
+    /// Sets the base mesh of an added model, or an empty one for a removed model. No page may be
+    /// resident (asserted).
     void set_base(const BaseMesh& base) noexcept;
     [[nodiscard]] bool has_base() const noexcept { return !slots_.base.faces.empty(); }
-    /// Pages of this model.
+    /// Number of pages of this model.
     [[nodiscard]] std::uint32_t pages_here() const noexcept { return pages_here_; }
 
     /// Links all records that can be linked now, in the page parsed into `slot` and in waiting
-    /// pages. Cost: per record, and per waiting record for which one of them was the last missing
-    /// one.
+    /// pages. Checks each record of the page, and each waiting record whose last missing dependency
+    /// it was.
     void link_page(ChunkId chunk, std::uint32_t slot) noexcept;
 
     /// Removes the records of a slot that the haptic thread returned with its content unchanged.
@@ -117,7 +117,8 @@ public:
         std::uint64_t linked{0};
     };
 
-    /// Linked records of the page, reported with its arrival. Later ones are owed as updates.
+    /// Returns the page's linked records, one bit each, to be reported with its arrival. Records
+    /// linked later are owed as updates.
     [[nodiscard]] std::uint64_t tell_linked(std::uint32_t slot) noexcept;
     /// Takes the update that has been owed longest; false if none is. Only for pages that were
     /// handed over: call tell_linked() for a page right after link_page().
@@ -136,8 +137,8 @@ public:
     /// Records refused since the start; each is a fault of the model or of its sender.
     [[nodiscard]] std::uint64_t records_refused() const noexcept { return refused_count_; }
     [[nodiscard]] std::uint64_t records_linked() const noexcept { return linked_count_; }
-    /// Checks of records since the start: per stay in the pools at most 1 + the record's
-    /// dependencies.
+    /// Number of record checks since the start. A record's stay in the pool adds at most 1 + its
+    /// number of dependencies.
     [[nodiscard]] std::uint64_t looks() const noexcept { return looks_; }
 
     /// Linked record, for StarResolver.
@@ -150,7 +151,7 @@ private:
     static constexpr Seat kNoSeat = LinkPool::kNoSeat;
     static constexpr std::uint32_t kNotOwing = LinkPool::kNotOwing;
 
-    /// Slots that owe an update, oldest first.
+    /// Queue of the slots that owe an update, oldest first.
     struct Owing
     {
         std::span<std::uint32_t> behind; ///< Span of the pool.

@@ -29,7 +29,7 @@ struct FaceState
         return {(record.value << 3U) | place};
     }
     [[nodiscard]] constexpr bool is_base() const noexcept { return value == kBaseValue; }
-    /// Undefined for the base state, as is place().
+    /// The record that last changed the face; must not be called for a base state (asserted).
     [[nodiscard]] constexpr RecordId record() const noexcept
     {
         TACTUS_ASSERT(!is_base());
@@ -61,16 +61,17 @@ static_assert(kMaxRecords <= FaceState::kBaseValue >> 3U, "no record's state is 
 /// Little-endian, fixed by golden bytes: encoder, parse, link and forest all touch it.
 struct VsplitRecord
 {
-    Vec3f position_m{};                       ///< v in the model's frame; exact.
-    VertexId parent{};                        ///< u.
-    std::array<FaceId, kMaxStarFaces> star{}; ///< A, B, fan; none if there is no face.
+    Vec3f position_m{};                       ///< Position of v, model frame; exact.
+    VertexId parent{};                        ///< Vertex u.
+    std::array<FaceId, kMaxStarFaces> star{}; ///< Faces A, B, fan; none if missing.
     /// The record that splits this face next, after this record: `kNextExact` if the face is then
     /// exact, `kNextPending` until that record is linked. Both threads access it through
     /// std::atomic_ref; only the transport thread writes.
     std::array<std::uint32_t, kMaxStarFaces> next{};
-    std::array<FaceState, kMaxFanFaces> before{};    ///< State of fan face i before this split.
-    std::array<std::uint8_t, kMaxStarFaces> error{}; ///< Error code of each star face after it.
-    std::array<std::uint32_t, 2> bucket{}; ///< rank >> 3 of A and B in the left-full median order.
+    std::array<FaceState, kMaxFanFaces> before{}; ///< State of fan face i before this split.
+    /// Error code of each star face after this split.
+    std::array<std::uint8_t, kMaxStarFaces> error{};
+    std::array<std::uint32_t, 2> bucket{}; ///< Ranks of A and B in left-full median order, >> 3.
     std::uint16_t depth{0};   ///< 1 + the largest depth of its dependencies; 1 on the base mesh.
     std::uint8_t fan_size{0}; ///< 1 .. kMaxFanFaces.
     std::uint8_t reach{0};    ///< Error code of the radius round v that holds star, fan and errors.

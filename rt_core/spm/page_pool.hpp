@@ -21,7 +21,7 @@ struct ShownPage
     ChunkId chunk{};        ///< None: the slot is the transport thread's.
     std::uint32_t owner{0}; ///< The model that had the slot last.
     static_assert(kRecordsPerChunk <= 64);
-    std::uint64_t refined{0}; ///< One bit per record. Any bit pins the page.
+    std::uint64_t refined{0}; ///< Split records, one bit each; any bit pins the page.
 
     bool operator==(const ShownPage&) const noexcept = default;
 };
@@ -30,8 +30,8 @@ static_assert(sizeof(ShownPage) == 16);
 /// State of a page slot on the haptic thread.
 struct PageMeta : ShownPage
 {
-    std::uint64_t held{0};    ///< Refined for a closure that isn't complete; not to be merged.
-    std::uint64_t linked{0};  ///< Bits reported through the inbox; the linker may be ahead.
+    std::uint64_t held{0};    ///< Records held for an incomplete closure, one bit each.
+    std::uint64_t linked{0};  ///< Bits reported by the linker, which may be ahead.
     std::uint32_t touched{0}; ///< Frame number of the last use.
 };
 
@@ -46,19 +46,20 @@ struct PagePool
     {
     }
 
-    /// First key of a model's chunks.
+    /// Key of a model's chunk 0 in slot_of; further chunks follow.
     [[nodiscard]] static constexpr std::uint32_t first_key(std::uint32_t owner) noexcept
     {
         return owner << kKeyBits;
     }
 
-    /// Marks the slot as changed for the viewer copy. Callers must call it after each change.
+    /// Marks a slot for update_copy(). Callers must call it after each change of its ShownPage.
     void mark_changed(std::uint32_t slot) noexcept
     {
         changed_[slot / kWord] |= std::uint64_t{1} << (slot % kWord);
     }
-    /// Updates a copy of the first slots since the last call: 9 instructions per 64 slots, and 16
-    /// for each marked one. There is one such copy, made once from `metas`.
+    /// Updates a copy of the first slots: copies those marked since the last call and clears their
+    /// marks. 9 instructions per 64 slots, and 16 for each marked one. Only one copy may exist,
+    /// first made from `metas`.
     void update_copy(std::span<ShownPage> copy) noexcept
     {
         const std::size_t words = std::min(changed_.size(), (copy.size() + kWord - 1) / kWord);

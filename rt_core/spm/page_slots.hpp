@@ -20,8 +20,8 @@ namespace tactus
 ///
 /// The transport thread alone writes: a page's content while the slot is on loan to it, and later
 /// only `next` (through std::atomic_ref). The haptic thread reads slots that were handed over
-/// through the inbox. A record counts for it once an event of the inbox reports it as linked; its
-/// PageTable holds those bits.
+/// through SlotQueues::arrived. It uses a record once an event of that queue reports it as linked;
+/// its PageTable holds those bits.
 struct PageSlots
 {
     std::span<Page> pages;
@@ -53,8 +53,8 @@ struct PageSlots
 
 /// Reads a `next` that the other thread may be writing. It is the only data that changes during a
 /// frame, yet no result depends on when. A `next` changes once from kNextPending to the id of one
-/// record, and that is written before the record's linked bit is pushed into the inbox. A reader
-/// that has taken the bit reads the id; a reader that hasn't finds that the id isn't linked
+/// record, before that record's linked bit is pushed into SlotQueues::arrived. A reader that has
+/// taken the bit reads the id. A reader that hasn't finds that the id isn't linked
 /// (PageTable::find_linked), which means the same as kNextPending. So relaxed order suffices.
 [[nodiscard]] inline std::uint32_t load_next(std::uint32_t& next) noexcept
 {

@@ -33,7 +33,8 @@ public:
         TACTUS_ASSERT(slots.pages.size() == pool.metas.size());
     }
 
-    /// Adopts a page; `linked` has a bit for each record that find_linked() may return.
+    /// Adds a page that arrived in a slot; `linked` has a bit for each record that find_linked()
+    /// may return.
     void adopt(ChunkId chunk, std::uint32_t slot, std::uint32_t frame,
                std::uint64_t linked = 0) noexcept
     {
@@ -73,7 +74,7 @@ public:
         --used_;
     }
 
-    /// Clears refined and held records of the page, after the forest has left.
+    /// Clears the refined and held bits of a page, after VertexForest::leave().
     void forget_refined(std::uint32_t slot) noexcept
     {
         TACTUS_ASSERT(is_own(slot));
@@ -104,7 +105,7 @@ public:
         return is_linked ? &slots_.pages[slot].records[place] : nullptr;
     }
 
-    /// Record of a resident page: refined records pin theirs.
+    /// Record of a page that must be resident (asserted). Pages with refined records always are.
     [[nodiscard]] VsplitRecord& resident(RecordId record) const noexcept
     {
         const std::uint32_t slot = find(chunk_of(record));
@@ -154,7 +155,7 @@ public:
         return meta_[slot].owner == owner_ && !meta_[slot].chunk.is_none();
     }
     [[nodiscard]] std::uint32_t owner() const noexcept { return owner_; }
-    /// Slots of all models.
+    /// Number of slots of all models.
     [[nodiscard]] std::uint32_t capacity() const noexcept
     {
         return static_cast<std::uint32_t>(meta_.size());

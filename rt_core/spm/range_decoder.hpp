@@ -53,10 +53,10 @@ public:
     }
 
     /// True if bytes are left that no symbol used.
-    [[nodiscard]] bool has_observed_energy() const noexcept { return read_ < bytes_.size(); }
+    [[nodiscard]] bool has_bytes_left() const noexcept { return read_ < bytes_.size(); }
 
 private:
-    /// Refills the range, which no bit shrinks by more than 2^-8.
+    /// Refills the range, which no bit shrinks below 2^-8 of itself, so one byte is enough.
     void refill() noexcept
     {
         if (range_ < kRangeLeast)

@@ -46,7 +46,7 @@ public:
     enum class Outcome : std::uint8_t
     {
         resolved,
-        waits, ///< See missing().
+        waits, ///< The record missing() is not linked.
         refused
     };
 
@@ -86,8 +86,8 @@ public:
                           : std::array{v, w[place - 2], w[place - 1]};
     }
 
-    /// Place in the star of the face with the directed edge, or kNoPlace. If the fan closes, w0 =
-    /// wk, its edges precede those of A and B.
+    /// Place in the star of the face with the directed edge, or kNoPlace. If the fan closes (w0 =
+    /// wk), fan faces come before A and B.
     [[nodiscard]] std::uint32_t place_with_edge(const LinkedStar& star, VertexId from,
                                                 VertexId to) const noexcept
     {
@@ -165,7 +165,7 @@ public:
         return std::span(ring_positions_).first(record_.fan_size + 2U);
     }
 
-    // Steps of the encoder, which tries anchors.
+    // The functions below are for the encoder, which tries several anchors.
 
     /// Starts a fan, with no owners found yet.
     void begin_fan() noexcept
@@ -178,7 +178,8 @@ public:
         TACTUS_ASSERT(owner_count_ < owners_.size());
         owners_[owner_count_++] = owner;
     }
-    /// State of the face with the directed edge as the walk derives it; base if it can't.
+    /// State of the face with the directed edge `from` -> `to`, as the walk derives it: that of the
+    /// deepest known record; the base state if none has the edge.
     [[nodiscard]] FaceState derive(VertexId from, VertexId to) noexcept
     {
         FaceState best = FaceState::base();
@@ -441,9 +442,8 @@ private:
     VsplitRecord record_;
     StarRing ring_;
     std::array<GridPosition, kMaxFanFaces + 2> ring_positions_{};
-    std::array<LinkedStar, kMaxFanFaces> owners_{};     ///< Owners found so far; none for base
-                                                        ///< faces.
-    std::array<LinkedStar, kMaxFanFaces> fan_owners_{}; ///< Indexed by fan place.
+    std::array<LinkedStar, kMaxFanFaces> owners_{};     ///< Owners found, without base faces.
+    std::array<LinkedStar, kMaxFanFaces> fan_owners_{}; ///< Fan places; null for base faces.
     std::uint32_t owner_count_{0};
     RecordId missing_{};
 };

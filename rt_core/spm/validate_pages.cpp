@@ -33,7 +33,7 @@ Flaw find_flaw(const PageTable& pages, const ModelCounts& counts) noexcept
         const std::uint64_t all =
             ~std::uint64_t{0} >> (kRecordsPerChunk - records_in_chunk(counts, meta.chunk));
         finder.expect(pages.find(meta.chunk) == slot, "slot", slot,
-                      "has a page that is found elsewhere or nowhere");
+                      "has a page that is not found in this slot");
         finder.expect((meta.linked & ~all) == 0, "slot", slot, "links records beyond the last");
         finder.expect((meta.refined & ~meta.linked) == 0, "slot", slot,
                       "has a refined record that is not linked");
@@ -42,7 +42,7 @@ Flaw find_flaw(const PageTable& pages, const ModelCounts& counts) noexcept
     }
     // Every page is found in its own slot, so equal counts leave none in the index alone.
     finder.expect(resident == pages.used(), "table", resident,
-                  "pages are in its slots, and its index has others");
+                  "pages are in its slots, but its index differs");
     return finder.first();
 }
 

@@ -139,10 +139,10 @@ Vec3 bumpy_force_n(const Vec3& device_m, double radius_m, double stiffness_n_per
 
 double Faceting::force_error_n(const Touch& touch) const
 {
-    return touch.stiffness_n_per_m * (distance_m + touch.depth_m * force_turn_rad(touch));
+    return touch.stiffness_n_per_m * (distance_m + touch.depth_m * force_rotation_rad(touch));
 }
 
-double Faceting::force_turn_rad(const Touch& touch) const
+double Faceting::force_rotation_rad(const Touch& touch) const
 {
     return normal_rad / (1.0 - curvature_per_m * (touch.radius_m + touch.depth_m));
 }

@@ -70,7 +70,7 @@ struct Faceting
     /// (r + d)), to first order in t, and the force error is at most stiffness x (h + d p).
     [[nodiscard]] double force_error_n(const Touch& touch) const;
     /// Bound p of the force's angle.
-    [[nodiscard]] double force_turn_rad(const Touch& touch) const;
+    [[nodiscard]] double force_rotation_rad(const Touch& touch) const;
 };
 /// Measures all faces at their corners, edge midpoints and centres, in the mesh frame, whose origin
 /// lies at `origin_m` of the surface's. About 3 us a face.

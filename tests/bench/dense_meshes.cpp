@@ -7,9 +7,9 @@
 
 #include "host_tools/shapes/shapes.hpp"
 #include "rt_core/limits.hpp"
-#include "tests/bench/body_cases.hpp"
 #include "tests/bench/instruction_count.hpp"
 #include "tests/bench/mesh_touch.hpp"
+#include "tests/bench/sheet_tool_cases.hpp"
 #include "tests/bench/stage_timer.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/surface_slide.hpp"
@@ -146,7 +146,7 @@ std::vector<Vec3> dense_way(const Scene& scene, const DenseTool& tool, std::uint
     test::SlideManner manner;
     manner.diagonal_m = scene.model.diagonal_m;
     manner.step_m = kDenseSlide_m_per_s * kPeriod_s;
-    manner.turn_rad = kDenseTurn_rad_per_s * kPeriod_s;
+    manner.rotation_rad = kDenseTurn_rad_per_s * kPeriod_s;
     manner.rotation_rate = [](std::uint64_t turn)
     { return 1.0 - kDenseUneven * (0.5 + 0.5 * test::signed_unit(kSeed, turn)); };
     test::SurfaceSlide slide(

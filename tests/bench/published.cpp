@@ -29,9 +29,9 @@ Program start_at(const NetworkEnd& end, const std::string& name,
 
 Program publish(const Scene& scene, const NetworkEnd& end, const std::filesystem::path& folder)
 {
-    Program host = start_at(end, "spm_publish", folder, {scene.model.path, "--name", "model"});
-    host.wait_for("ready on DDS domain", kStartTimeout);
-    return host;
+    Program server = start_at(end, "spm_publish", folder, {scene.model.path, "--name", "model"});
+    server.wait_for("ready on DDS domain", kStartTimeout);
+    return server;
 }
 
 } // namespace tactus::bench

@@ -39,7 +39,7 @@ RelayedNetworks RelayedNetworks::make(const LinkManner& manner, const std::files
     RelayedNetworks networks(std::move(relay));
     const auto ready = networks.relay_.ask("");
     const Json facts = Json::parse(ready);
-    networks.host_ = end_of(facts, "host");
+    networks.server_ = end_of(facts, "server");
     networks.controller_ = end_of(facts, "controller");
     return networks;
 }
@@ -49,7 +49,7 @@ LinkTraffic RelayedNetworks::traffic()
     const auto answer = relay_.ask("count");
     const Json counted = Json::parse(answer);
     LinkTraffic traffic;
-    for (const char* direction : {"to_host", "to_controller"})
+    for (const char* direction : {"to_server", "to_controller"})
     {
         traffic.payload_bytes += counted[direction]["udp_payload_bytes"].get<std::uint64_t>();
         traffic.datagrams += counted[direction]["udp_datagrams"].get<std::uint64_t>();

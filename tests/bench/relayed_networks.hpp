@@ -39,7 +39,7 @@ public:
     [[nodiscard]] static RelayedNetworks make(const LinkManner& manner,
                                               const std::filesystem::path& folder);
 
-    [[nodiscard]] const NetworkEnd& host() const { return host_; }
+    [[nodiscard]] const NetworkEnd& server() const { return server_; }
     [[nodiscard]] const NetworkEnd& controller() const { return controller_; }
     [[nodiscard]] LinkTraffic traffic();
 
@@ -47,7 +47,7 @@ private:
     explicit RelayedNetworks(Program relay) : relay_(std::move(relay)) {}
 
     Program relay_;
-    NetworkEnd host_;
+    NetworkEnd server_;
     NetworkEnd controller_;
 };
 

@@ -51,9 +51,9 @@ void tell(double ms)
 int run(int argc, char** argv)
 {
     using Clock = std::chrono::steady_clock;
-    CommandLine line("scene_joiner", "Joins a host and tells how long that took, as JSON.");
+    CommandLine line("scene_joiner", "Joins a server and tells how long that took, as JSON.");
     Options options;
-    line.add_option("--name", options.name, "Its own, for the host").show_default();
+    line.add_option("--name", options.name, "Its own, for the server").show_default();
     line.add_option("--domain", options.domain, "DDS domain id").integer_between(0, 232);
     line.add_option("--objects", options.objects, "How many there are to have");
     line.add_option("--models", options.models, "Instead: headers of so many, model-0 and so on");
@@ -94,17 +94,17 @@ int run(int argc, char** argv)
     dds::PieceExchange& exchange = client.value()->exchange();
     dds::SceneReader scene(client.value()->domain(), exchange);
     bool is_told = false;
-    std::array<std::uint64_t, 1> host{};
+    std::array<std::uint64_t, 1> server{};
     while (!stop_requested)
     {
         exchange.step();
         const auto* offer = client.value()->catalogue().find({"model-0", std::nullopt});
         if (offer != nullptr)
         {
-            host[0] = offer->host_epoch;
-            scene.poll(host, [](dds::SceneNews, const dds::SeenObject&) {});
+            server[0] = offer->server_epoch;
+            scene.poll(server, [](dds::SceneNews, const dds::SeenObject&) {});
         }
-        if (!is_told && scene.objects(host[0]).size() == options.objects)
+        if (!is_told && scene.objects(server[0]).size() == options.objects)
         {
             is_told = true;
             tell(since_begin_ms());

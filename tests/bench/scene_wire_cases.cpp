@@ -12,7 +12,7 @@
 #include "tests/bench/published.hpp"
 #include "tests/bench/relayed_networks.hpp"
 #include "tests/bench/scene_cases.hpp"
-#include "tests/bench/showing_host.hpp"
+#include "tests/bench/showing_server.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -107,15 +107,15 @@ std::vector<std::string> all_objects()
 }
 
 /// Body of a case, in its own process: returns its figures as JSON.
-using Measure = Json (*)(ShowingHost& host, const std::filesystem::path& folder);
+using Measure = Json (*)(ShowingServer& server, const std::filesystem::path& folder);
 
 std::string measured(const Files& files, const std::filesystem::path& folder, std::uint32_t objects,
                      Measure measure)
 {
     enter_own_network();
     ::unsetenv("CYCLONEDDS_URI"); // The environment is that of the programs.
-    auto host = ShowingHost::start(kDomain, files, objects);
-    return measure(*host, folder).dump();
+    auto server = ShowingServer::start(kDomain, files, objects);
+    return measure(*server, folder).dump();
 }
 
 /// Scene of at least `faces` faces, each slightly larger than the one before.
@@ -162,11 +162,11 @@ void run_wire_case(const CaseContext& context, const WireCase& test_case)
 
 constexpr const char* kLateJoin = "late join";
 constexpr const char* kObjectAtStart = "an object at the join";
-constexpr const char* kAlone = "at rest, a host alone";
+constexpr const char* kAlone = "at rest, a server alone";
 constexpr const char* kAtRest = "at rest";
 constexpr const char* kInMotion = "100 moving at 100 Hz";
 
-Json measure_flow(ShowingHost& host, const std::filesystem::path& folder)
+Json measure_flow(ShowingServer& server, const std::filesystem::path& folder)
 {
     Json told;
     told[kAlone] = kilobytes_per_s();
@@ -175,7 +175,7 @@ Json measure_flow(ShowingHost& host, const std::filesystem::path& folder)
     told[kObjectAtStart] = late.bytes() / kObjects;
     std::this_thread::sleep_for(1s);
     told[kAtRest] = kilobytes_per_s();
-    host.move(kMoving);
+    server.move(kMoving);
     std::this_thread::sleep_for(1s);
     told[kInMotion] = kilobytes_per_s();
     return told;
@@ -185,14 +185,14 @@ constexpr const char* kTogether = "64 join at once";
 constexpr const char* kBytes = "bytes by those of 64 single joins";
 constexpr const char* kLoaded = "64 join at once, 100 moving";
 
-Json measure_joins(ShowingHost& host, const std::filesystem::path& folder)
+Json measure_joins(ShowingServer& server, const std::filesystem::path& folder)
 {
     Json told;
     const double single_bytes = Joiners::join(folder, "single", 1, all_objects()).bytes();
     for (const bool moves : {false, true})
     {
         std::this_thread::sleep_for(2s); // Killed processes are gone by then.
-        host.move(moves ? kMoving : 0);
+        server.move(moves ? kMoving : 0);
         const auto all = Joiners::join(folder, moves ? "loaded" : "all", kJoiners, all_objects());
         told[moves ? kLoaded : kTogether] = all.longest_ms() * 1e-3;
         if (!moves)
@@ -225,7 +225,7 @@ double start_of_hrtc(const std::filesystem::path& folder, const std::vector<std:
     return ms;
 }
 
-Json measure_start(ShowingHost& /*host*/, const std::filesystem::path& folder)
+Json measure_start(ShowingServer& /*server*/, const std::filesystem::path& folder)
 {
     const auto one = Joiners::join(folder, "start", 1, {"--models", fmt::format("{}", kModels)});
     const auto loop = start_of_hrtc(folder, {"--scene", "bench", "--pool-mib", "8"});
@@ -289,9 +289,9 @@ void run_streamed_model_case(const CaseContext& context, const StreamedModelCase
     const test::TemporaryFolder folder("scene-streamed-models");
     const auto path = write_scene(files, diagonal_m, test_case.objects, folder.path());
     auto networks = RelayedNetworks::make({10.0}, folder.path());
-    auto host = start_at(networks.host(), "spm_publish", folder.path(),
-                         {path.string(), "--scene", "bench"});
-    host.wait_for("ready on DDS domain", kStartTimeout);
+    auto server = start_at(networks.server(), "spm_publish", folder.path(),
+                           {path.string(), "--scene", "bench"});
+    server.wait_for("ready on DDS domain", kStartTimeout);
     auto rider = start_at(networks.controller(), "scene_rider", folder.path(),
                           {"--scene", "bench", "--pool-mib", test_case.pool_mib, "--visits",
                            fmt::format("{}", test_case.visits)});

@@ -37,10 +37,10 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 int run(int argc, char** argv)
 {
     CommandLine line("stream_client",
-                     "Asks a host for chunks and tells how long they took, as JSON.");
+                     "Asks a server for chunks and tells how long they took, as JSON.");
     Options options;
     line.add_option("--model", options.model, "NAME[@HASH]").required();
-    line.add_option("--name", options.name, "Its own, for the host").show_default();
+    line.add_option("--name", options.name, "Its own, for the server").show_default();
     line.add_option("--domain", options.domain, "DDS domain id").integer_between(0, 232);
     line.add_option("--rate", options.rate_hz, "Chunks a second; 0: as fast as they come")
         .number_between(0.0, 1e6);

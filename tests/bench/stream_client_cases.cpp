@@ -70,8 +70,8 @@ void run_throughput_case(const CaseContext& context, const ThroughputCase& test_
     constexpr double kSeconds = 5.0;
     const Scene& scene = context.scenes.get(test_case.scene);
     const test::TemporaryFolder folder("throughput");
-    const auto host = publish(scene, {}, folder.path());
-    const double before_mib = resident_mib(host.id());
+    const auto server = publish(scene, {}, folder.path());
+    const double before_mib = resident_mib(server.id());
     auto client = start_client(folder.path(), 0, 0.0, kSeconds);
     const auto report = client_report(client, folder.path(), 0);
     CaseRows rows(context.rows, context.common_row(scene.model.name, "throughput"));
@@ -80,8 +80,8 @@ void run_throughput_case(const CaseContext& context, const ThroughputCase& test_
              test_case.mb_per_s)
         .is_least = true;
     rows.add("pieces", report["pieces"].get<double>() / seconds, "/s");
-    rows.add("host before", before_mib, "MiB");
-    rows.add("host after", resident_mib(host.id()), "MiB");
+    rows.add("server before", before_mib, "MiB");
+    rows.add("server after", resident_mib(server.id()), "MiB");
 }
 
 void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
@@ -90,7 +90,7 @@ void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
     constexpr double kServedGoal = 95.0; // The last chunks are in transit at the end.
     const Scene& scene = context.scenes.get(test_case.scene);
     const test::TemporaryFolder folder("fan-out");
-    const auto host = publish(scene, {}, folder.path());
+    const auto server = publish(scene, {}, folder.path());
     CaseRows rows(context.rows, context.common_row(scene.model.name, "many controllers"));
     rows.add("clients", test_case.clients, "");
     double before_ms = 0.0;
@@ -132,7 +132,7 @@ void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
         }
         before_ms = p99_ms;
     }
-    rows.add("host", resident_mib(host.id()), "MiB");
+    rows.add("server", resident_mib(server.id()), "MiB");
 }
 
 namespace
@@ -193,11 +193,11 @@ void run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_c
     const FrameRun run = make_slide(scene, kSpeed_diag_per_s, tour_splits(kSpeed_diag_per_s),
                                     std::size_t{4} << 20U, frames);
     const test::TemporaryFolder folder("beside-dds");
-    std::optional<Program> host;
+    std::optional<Program> server;
     std::unique_ptr<Flood> flood;
     if (test_case.is_beside)
     {
-        host.emplace(publish(scene, {}, folder.path()));
+        server.emplace(publish(scene, {}, folder.path()));
         flood = Flood::begin();
     }
     FrameReplay replay(run);

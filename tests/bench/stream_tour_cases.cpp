@@ -68,7 +68,7 @@ struct Place
         }
         return place;
     }
-    [[nodiscard]] NetworkEnd host() const { return networks ? networks->host() : NetworkEnd{}; }
+    [[nodiscard]] NetworkEnd server() const { return networks ? networks->server() : NetworkEnd{}; }
     [[nodiscard]] NetworkEnd controller() const
     {
         return networks ? networks->controller() : NetworkEnd{};
@@ -148,7 +148,7 @@ void run_tour_case(const CaseContext& context, const TourCase& test_case)
     const TapTour tour = tap_tour(scene.touch(), manner);
     write_motion(context, scene, tour.goals_m, folder.path() / "motion.rec");
     auto place = Place::make(test_case.delay_ms, test_case.loss, folder.path());
-    const auto host = publish(scene, place.host(), folder.path());
+    const auto server = publish(scene, place.server(), folder.path());
     const auto report = run_hrtc(
         scene, place.controller(),
         {test_case.speed_diag_per_s, test_case.cache_mib, tour.goals_m.size()}, folder.path());
@@ -199,7 +199,7 @@ void run_first_touch_case(const CaseContext& context, const FirstTouchCase& test
         const std::vector<Vec3> goals_m(kFrames, touches ? touching_m : away_m);
         write_motion(context, scene, goals_m, folder.path() / "motion.rec");
         auto place = Place::make(test_case.delay_ms, 0.0, folder.path());
-        const auto host = publish(scene, place.host(), folder.path());
+        const auto server = publish(scene, place.server(), folder.path());
         const auto report =
             run_hrtc(scene, place.controller(), {0.5, kCache_mib, kFrames}, folder.path());
         const auto traffic = place.networks->traffic();

@@ -5,10 +5,10 @@
 /// around the bumpy sphere, 1 mm below the rest position of the proxy's centre.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "tests/bench/body_cases.hpp"
 #include "tests/bench/force_rows.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/rigid_sweeps.hpp"
+#include "tests/bench/sheet_tool_cases.hpp"
 #include "tests/bench/suites.hpp"
 
 #include <fmt/format.h>
@@ -313,7 +313,7 @@ std::vector<Case> force_cases()
                          }});
     }
     cases.push_back({"rigid", When::always, run_rigid_sweeps});
-    cases.push_back({"sheets", When::always, run_body_sheets});
+    cases.push_back({"sheets", When::always, run_sheet_tools});
     cases.push_back({"dense", When::always, run_dense_meshes});
     cases.push_back({"units", When::always, run_units});
     cases.push_back({"recorded", When::always,

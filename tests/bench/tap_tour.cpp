@@ -59,7 +59,7 @@ private:
         slide.diagonal_m = scene_.diagonal_m;
         slide.radius_diag = radius_diag;
         slide.step_m = step_m_;
-        slide.turn_rad = kTapTurn_rad_per_s * kPeriod_s;
+        slide.rotation_rad = kTapTurn_rad_per_s * kPeriod_s;
         slide.first_frame = first_frame;
         slide.rotation_rate = [seed = kSeed + goals_m_.size()](std::uint64_t turn)
         { return test::signed_unit(seed, turn); };

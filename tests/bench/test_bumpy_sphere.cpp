@@ -116,8 +116,8 @@ TEST(Faceting, bounds_the_force_of_a_sphere_that_rests_on_the_mesh)
     }
     EXPECT_LE(farthest_m, sut.distance_m);
     EXPECT_GE(farthest_m, 0.3 * sut.distance_m);
-    EXPECT_LE(worst_rad, sut.force_turn_rad(touch));
-    EXPECT_GE(worst_rad, 0.3 * sut.force_turn_rad(touch));
+    EXPECT_LE(worst_rad, sut.force_rotation_rad(touch));
+    EXPECT_GE(worst_rad, 0.3 * sut.force_rotation_rad(touch));
 }
 
 } // namespace

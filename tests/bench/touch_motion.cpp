@@ -47,7 +47,7 @@ void slide(std::vector<Vec3>& path, const TouchScene& scene, double speed_diag_p
     manner.diagonal_m = scene.diagonal_m;
     manner.radius_diag = kRadius_diag;
     manner.step_m = speed_diag_per_s * scene.diagonal_m * kPeriod_s;
-    manner.turn_rad = kTurn_rad_per_s * kPeriod_s;
+    manner.rotation_rad = kTurn_rad_per_s * kPeriod_s;
     manner.rotation_rate = [](std::uint64_t turn) { return test::signed_unit(kSeed, turn); };
     test::SurfaceSlide slide(scene.tree, manner, path.back());
     for (std::uint32_t i = 0; i < frames; ++i)

@@ -249,6 +249,10 @@ class Text(House):
         self.source('rt_core/base/good.hpp', 'OldName a;', 'OldNames b; // of AnOldName')
         self.refuse('old_names', 'page.md:2: --old has another name: see',
                     'rt_core/base/good.hpp:4: OldName has another name: see')
+        self.text('page.md', '# A page\n')
+        self.source('rt_core/base/good.hpp', 'int a;')
+        self.text('tests/unit/hrtc/wrong_usages.txt', '3 | hrtc --old 1\n')
+        self.accept('old_names')
 
     def test_marks_of_unfinished_work_are_refused(self):
         for mark in ('TO' 'DO', 'FIX' 'ME', 'X' 'XX', 'HA' 'CK'):

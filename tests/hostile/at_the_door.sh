@@ -20,7 +20,7 @@ end_well() { # end_well REFUSAL
     stop_hrtc
     check report.json frames '>' 300 force.max_n '<=' 8 "tools.0.traffic.refused.$1" '>=' 3
     check_clean report.json
-    grep -q 'tool 0: [0-9]* datagrams* .* refused, most of them: ' hrtc.log \
+    grep -q 'tool 0: [0-9]* datagrams* .* refused, mostly: ' hrtc.log \
         || fault 'no line tells of the strangers'
     check_sizes hrtc.log
 }
@@ -72,7 +72,7 @@ case $attack in
         wait_for_more "$driving" 200
         stop KILL "$true_one"
         end_hrtc 2
-        grep -q 'another one describes itself at its port; a run keeps the limits' hrtc.log \
+        grep -q 'another device describes itself at its port; the run ends' hrtc.log \
             || fault 'hrtc does not say why it ended'
         check report.json frames '>' 300 force.max_n '<=' 8 tools.0.traffic.refused.foreign '>=' 3 \
             tools.0.traffic.refused.other_device '>=' 5 tools.0.traffic.sessions == 1

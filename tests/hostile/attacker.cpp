@@ -62,7 +62,7 @@ public:
     }
     /// Another participant of the same process, which knows what that one has seen.
     Attacker(std::uint32_t of_domain, const tactus_v5_CatalogueEntry& seen)
-        : host(seen)
+        : server(seen)
         , domain(of_domain)
         , participant_(checked(dds_create_participant(of_domain, nullptr, nullptr)))
     {
@@ -78,13 +78,13 @@ public:
     bool sees_both()
     {
         const auto end = Clock::now() + patience();
-        while (Clock::now() < end && (host.host_epoch == 0 || victim.host_epoch == 0))
+        while (Clock::now() < end && (server.server_epoch == 0 || victim.server_epoch == 0))
         {
-            take(catalogue_, host);
+            take(catalogue_, server);
             take(wanted_, victim);
             std::this_thread::sleep_for(5ms);
         }
-        return host.host_epoch != 0 && victim.host_epoch != 0;
+        return server.server_epoch != 0 && victim.server_epoch != 0;
     }
 
     /// Writer with the QoS of the honest ones, so that all readers match and one of the others has.
@@ -117,11 +117,11 @@ public:
         }
         return made;
     }
-    [[nodiscard]] std::string host_partition() const
+    [[nodiscard]] std::string server_partition() const
     {
         std::array<char, 32> text{};
-        std::snprintf(text.data(), text.size(), "host.%016llx",
-                      static_cast<unsigned long long>(host.host_epoch));
+        std::snprintf(text.data(), text.size(), "server.%016llx",
+                      static_cast<unsigned long long>(server.server_epoch));
         return text.data();
     }
     [[nodiscard]] std::string victim_name() const
@@ -136,7 +136,7 @@ public:
         return victim_name() + "." + tactus::hash_text(id);
     }
     /// Epoch by which the others' filters take us for a server.
-    [[nodiscard]] std::uint64_t own_epoch() const { return tactus::dds::host_epoch_of(own_); }
+    [[nodiscard]] std::uint64_t own_epoch() const { return tactus::dds::server_epoch_of(own_); }
     [[nodiscard]] const std::array<std::uint8_t, 16>& own() const { return own_; }
 
     /// Reader of all partitions, or reliably of ours alone.
@@ -163,7 +163,7 @@ public:
         return name + "." + tactus::hash_text(own_);
     }
     /// GUIDs of the server's writers of a topic, which discovery publishes.
-    [[nodiscard]] std::vector<RawRtps::Guid> writers_of_host(const std::string& topic) const
+    [[nodiscard]] std::vector<RawRtps::Guid> writers_of_server(const std::string& topic) const
     {
         const auto known = checked(
             dds_create_reader(participant_, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
@@ -176,7 +176,7 @@ public:
             tactus::dds::ParticipantId who{};
             std::memcpy(who.data(), writer.participant_key.v, who.size());
             if (info.valid_data && topic == writer.topic_name &&
-                tactus::dds::host_epoch_of(who) == host.host_epoch)
+                tactus::dds::server_epoch_of(who) == server.server_epoch)
             {
                 std::memcpy(found.emplace_back().data(), writer.key.v, sizeof(writer.key.v));
             }
@@ -187,9 +187,9 @@ public:
     }
     [[nodiscard]] std::int32_t participant() const { return participant_; }
 
-    std::vector<std::uint16_t> ports; ///< UDP ports of the others.
-    std::shared_ptr<RawRtps> raw;     ///< Sender for attacks without DDS.
-    tactus_v5_CatalogueEntry host{};  ///< Observed state.
+    std::vector<std::uint16_t> ports;  ///< UDP ports of the others.
+    std::shared_ptr<RawRtps> raw;      ///< Sender for attacks without DDS.
+    tactus_v5_CatalogueEntry server{}; ///< Observed state.
     tactus_v5_Wanted victim{};
     std::uint32_t domain;
 
@@ -251,25 +251,25 @@ Attack move_object(std::uint64_t serial, double x_m)
     return [=](Attacker& self)
     {
         const auto motion =
-            self.writer("tactus/v5/motion", tactus_v5_Motion_desc, self.host_partition(), true);
+            self.writer("tactus/v5/motion", tactus_v5_Motion_desc, self.server_partition(), true);
         const auto records =
-            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.server_partition());
         return [=, &self](std::uint64_t turn)
         {
             tactus_v5_MovedObject moved{0, 1, placement(turn % 2 == 0 ? x_m : 0.0)};
             tactus_v5_Motion sample = {};
-            sample.host_epoch = self.host.host_epoch;
+            sample.server_epoch = self.server.server_epoch;
             sample.serial = serial == 0 ? 1'000'000 + turn : serial;
-            sample.host_time_ns = static_cast<std::int64_t>(turn) * 4'000'000;
+            sample.server_time_ns = static_cast<std::int64_t>(turn) * 4'000'000;
             sample.objects = 1;
             sample.moved = {1, 1, &moved, false};
             dds_write(motion, &sample);
             tactus_v5_ObjectRecord record = {};
-            record.host_epoch = self.host.host_epoch;
+            record.server_epoch = self.server.server_epoch;
             record.generation = 1;
             record.serial = sample.serial;
             std::strcpy(static_cast<char*>(record.name), "false");
-            std::memcpy(record.model_hash, self.host.model_hash, sizeof(record.model_hash));
+            std::memcpy(record.model_hash, self.server.model_hash, sizeof(record.model_hash));
             record.pose = moved.pose;
             dds_write(records, &record);
         };
@@ -281,7 +281,7 @@ Attack dispose_catalogue()
     return [](Attacker& self)
     {
         const auto writer = self.writer("tactus/v5/catalogue", tactus_v5_CatalogueEntry_desc, "");
-        return [=, &self](std::uint64_t) { dds_dispose(writer, &self.host); };
+        return [=, &self](std::uint64_t) { dds_dispose(writer, &self.server); };
     };
 }
 
@@ -293,7 +293,7 @@ Attack forge_catalogue()
         const auto writer = self.writer("tactus/v5/catalogue", tactus_v5_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t)
         {
-            tactus_v5_CatalogueEntry entry = self.host;
+            tactus_v5_CatalogueEntry entry = self.server;
             entry.model_hash[0] ^= 1U;
             dds_write(writer, &entry);
         };
@@ -315,12 +315,12 @@ Attack spam_catalogue()
         const auto writer = self.writer("tactus/v5/catalogue", tactus_v5_CatalogueEntry_desc, "");
         return [=, &self](std::uint64_t turn)
         {
-            tactus_v5_CatalogueEntry entry = self.host;
+            tactus_v5_CatalogueEntry entry = self.server;
             std::snprintf(static_cast<char*>(entry.name), sizeof(entry.name), "bogus-%llu",
                           static_cast<unsigned long long>(turn));
             entry.model = number_in(turn);
             dds_write(writer, &entry);
-            entry.host_epoch = self.own_epoch();
+            entry.server_epoch = self.own_epoch();
             dds_write(writer, &entry);
         };
     };
@@ -337,7 +337,7 @@ Attack spam_wanted(bool right_epoch)
             tactus_v5_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
             std::memcpy(wanted.controller, &turn, sizeof(turn));
-            wanted.host_epoch = self.host.host_epoch + (right_epoch ? 0 : 1 + turn);
+            wanted.server_epoch = self.server.server_epoch + (right_epoch ? 0 : 1 + turn);
             wanted.granted = 128;
             std::strcpy(static_cast<char*>(wanted.controller_name), "stranger");
             dds_write(writer, &wanted);
@@ -390,11 +390,11 @@ Attack dispose_object()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.server_partition());
         return [=, &self](std::uint64_t)
         {
             tactus_v5_ObjectRecord record = {};
-            record.host_epoch = self.host.host_epoch;
+            record.server_epoch = self.server.server_epoch;
             dds_dispose(writer, &record);
         };
     };
@@ -406,19 +406,19 @@ Attack spam_objects()
     return [](Attacker& self)
     {
         const auto writer =
-            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.host_partition());
+            self.writer("tactus/v5/objects", tactus_v5_ObjectRecord_desc, self.server_partition());
         return [=, &self](std::uint64_t turn)
         {
             tactus_v5_ObjectRecord record = {};
-            record.host_epoch = self.host.host_epoch;
+            record.server_epoch = self.server.server_epoch;
             record.object = number_in(turn);
             record.generation = 1'000;
             record.serial = 1;
             std::strcpy(static_cast<char*>(record.name), "false");
-            std::memcpy(record.model_hash, self.host.model_hash, sizeof(record.model_hash));
+            std::memcpy(record.model_hash, self.server.model_hash, sizeof(record.model_hash));
             record.pose = placement(0.0);
             dds_write(writer, &record);
-            record.host_epoch = self.own_epoch();
+            record.server_epoch = self.own_epoch();
             dds_write(writer, &record);
         };
     };
@@ -434,16 +434,16 @@ Attack forge_pieces()
         return [=, &self](std::uint64_t turn)
         {
             std::array<std::uint8_t, 4'000> bytes{};
-            std::memcpy(bytes.data(), self.host.model_hash, sizeof(self.host.model_hash));
+            std::memcpy(bytes.data(), self.server.model_hash, sizeof(self.server.model_hash));
             bytes[20] = 2; // Kind: chunk.
             bytes[24] = static_cast<std::uint8_t>(turn);
             bytes[28] = 100;
             tactus_v5_Pieces pieces = {};
             pieces.sent = UINT64_MAX;
             pieces.payload = {bytes.size(), bytes.size(), bytes.data(), false};
-            for (const std::uint64_t epoch : {self.host.host_epoch, self.own_epoch()})
+            for (const std::uint64_t epoch : {self.server.server_epoch, self.own_epoch()})
             {
-                pieces.host_epoch = epoch;
+                pieces.server_epoch = epoch;
                 dds_write(writer, &pieces);
             }
         };
@@ -511,7 +511,7 @@ Attack visit()
         {
             tactus_v5_Wanted wanted = {};
             std::memcpy(wanted.controller, self.own().data(), self.own().size());
-            wanted.host_epoch = self.host.host_epoch;
+            wanted.server_epoch = self.server.server_epoch;
             wanted.granted = 128;
             std::strcpy(static_cast<char*>(wanted.controller_name),
                         turn % 8 == 0 ? "\x1b[31mred\x07" : "stranger");
@@ -539,7 +539,7 @@ Attack crowd_of_controllers()
         const auto members = std::make_shared<std::vector<Member>>();
         for (int i = 0; i < 50; ++i)
         {
-            auto self = std::make_unique<Attacker>(first.domain, first.host);
+            auto self = std::make_unique<Attacker>(first.domain, first.server);
             const auto reader = self->reader("tactus/v5/chunks", tactus_v5_Pieces_desc,
                                              self->own_partition("crowd"));
             const auto writer = self->writer("tactus/v5/wanted", tactus_v5_Wanted_desc, "crowd");
@@ -553,7 +553,7 @@ Attack crowd_of_controllers()
                 names.at(i) = {0, 2, i};
             }
             tactus_v5_Wanted wanted = {};
-            wanted.host_epoch = members->front().self->host.host_epoch;
+            wanted.server_epoch = members->front().self->server.server_epoch;
             wanted.generation = static_cast<std::uint32_t>(turn);
             wanted.objects = 1;
             wanted.granted = std::uint64_t{1} << 63U;
@@ -608,13 +608,13 @@ Attack crowd_of_endpoints(int count)
 /// Sends a packet in the name of each of the server's writers of a topic that announces a much
 /// later sample.
 Attack forge_sequence(const char* topic,
-                      RawRtps::Datagram (*make)(const RawRtps::Guid&, std::uint64_t host_epoch))
+                      RawRtps::Datagram (*make)(const RawRtps::Guid&, std::uint64_t server_epoch))
 {
     return [=](Attacker& self)
     {
         return [=, &self](std::uint64_t)
         {
-            const auto writers = self.writers_of_host(topic);
+            const auto writers = self.writers_of_server(topic);
             if (writers.empty() || self.ports.empty())
             {
                 std::fprintf(stderr, "attacker: found no writer of %s, or was told no ports\n",
@@ -625,7 +625,7 @@ Attack forge_sequence(const char* topic,
             {
                 for (const std::uint16_t port : self.ports)
                 {
-                    self.raw->send(make(writer, self.host.host_epoch), port);
+                    self.raw->send(make(writer, self.server.server_epoch), port);
                 }
             }
         };
@@ -725,7 +725,7 @@ int main(int argc, char** argv)
     attacker.raw = raw;
     if (!attacker.sees_both())
     {
-        std::fprintf(stderr, "attacker: saw no host and controller\n");
+        std::fprintf(stderr, "attacker: saw no server and controller\n");
         return 2;
     }
     for (int i = 4; i < argc; ++i)

@@ -31,7 +31,7 @@ expect 2 "is not published" "$hrtc" --domain "$domain" --model bumpy --allow-no-
 code=0
 ATTACKER_PATIENCE_S=5 CYCLONEDDS_URI=$plain "$attacker" "$domain" 1 catalogue_forged \
     >outsider.log 2>&1 || code=$?
-{ [[ $code == 2 ]] && grep -q 'saw no host and controller' outsider.log; } \
+{ [[ $code == 2 ]] && grep -q 'saw no server and controller' outsider.log; } \
     || fault "an outsider ended with $code: $(cat outsider.log)"
 
 # A controller's certificate permits reading and writing a controller's topics only.
@@ -45,7 +45,7 @@ done
 
 stop_hrtc
 cat publish.log
-check report.json frames '>' 1000 wire.host_lost == 0 models.0.pieces_refused == 0 \
+check report.json frames '>' 1000 wire.server_lost == 0 models.0.pieces_refused == 0 \
     models.0.bytes_received '>' 10000 refused == 0
 check_contact report.json force.contact_share 0.3
 check_clean report.json
@@ -66,10 +66,10 @@ wait_for_contact publish.log hand
 stop KILL "$publisher"
 wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
 secured_publisher
-wait_for_line hrtc.log "scene 'toy' is followed as spm_publish"
+wait_for_line hrtc.log "scene 'toy' now follows spm_publish"
 wait_for_contact publish.log hand
 stop_hrtc
-grep -q "scene 'toy' is followed as spm_publish (process $publisher on .*, cert:[0-9a-f]\{12\})" \
+grep -q "scene 'toy' now follows spm_publish (process $publisher on .*, cert:[0-9a-f]\{12\})" \
     hrtc.log || fault 'the line names no certificate'
 check report.json servers.lost == 1 servers.replaced == 1 servers.not_followed == 0
 stop_publisher

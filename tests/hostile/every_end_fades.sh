@@ -107,10 +107,10 @@ case $device in
 
         # The other programs do not end this way either.
         code=0
-        "$publish" --domain "$domain" --watch --seconds 3 bumpy.spm > >(head -n 1 >host.log) 2>&1 \
-            || code=$?
+        "$publish" --domain "$domain" --watch --seconds 3 bumpy.spm \
+            > >(head -n 1 >server.log) 2>&1 || code=$?
         ((code == 0)) || fault "without a reader spm_publish ended with $code"
-        grep -q "^serving 'bumpy'" host.log || fault "the host said: $(<host.log)"
+        grep -q "^serving 'bumpy'" server.log || fault "the server said: $(<server.log)"
         code=0
         "$1/spm_view" --domain "$domain" --port 0 --seconds 3 > >(exec true) 2>&1 || code=$?
         ((code == 0)) || fault "without a reader spm_view ended with $code"
@@ -134,12 +134,12 @@ case $device in
     plugin)
         ends KILL guard 137
         ends SEGV guard 139
-        expect 2 "--device: a guardian can't start: $recording: its motors have one line" \
+        expect 2 "--device: the guardian can't start: $recording: its motors have one line" \
             "$hrtc" --allow-no-rt --transport file --model bumpy.spm \
             --device "plugin:$recording,motors.log,refuse"
         "$hrtc" --allow-no-rt --transport file --model bumpy.spm --duration 0.2 \
             --device "plugin:$bare,motors.log" >bare.log 2>&1 || fault "bare: $(cat bare.log)"
-        grep -q "^hrtc: tool 0: $bare has no guard; when hrtc is killed, " bare.log \
+        grep -q "^hrtc: tool 0: $bare has no guard; if hrtc is killed, " bare.log \
             || fault "nothing tells that there is no guard: $(cat bare.log)"
         ;;
     dhd)

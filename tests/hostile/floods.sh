@@ -38,7 +38,7 @@ def udp():
     names, values = [line.split()[1:] for line in open("/proc/net/snmp") if line.startswith("Udp:")]
     return dict(zip(names, map(int, values)))
 
-pids = dict(zip(("controller", "host"), sys.argv[3:]))
+pids = dict(zip(("controller", "server"), sys.argv[3:]))
 before = {who: threads(pid) for who, pid in pids.items()}
 udp_before, start = udp(), time.monotonic()
 time.sleep(float(sys.argv[2]))
@@ -90,11 +90,11 @@ print(f"{sys.argv[1]}: {int(sent[1]) / float(sent[2]):.0f} turns/s sent;"
       f" own {report['deadline']['overrun']}, machine {report['deadline']['latency_misses']};"
       f" controller {everything('controller'):.0f} % of a processor, receiving"
       f" {share('controller', *receiving):.0f} %, {found['controller']['mib']:.0f} MiB;"
-      + (f" host {everything('host'):.0f} %, {found['host']['mib']:.0f} MiB;"
-         if "host" in found else "")
+      + (f" server {everything('server'):.0f} %, {found['server']['mib']:.0f} MiB;"
+         if "server" in found else "")
       + f" arrival p99 {report['wire']['arrival_ms']['p99']} ms;"
       f" load {report['machine']['load_average']}, fifo {report['machine']['fifo']};"
-      f" threads {found['controller']} {found.get('host')}")
+      f" threads {found['controller']} {found.get('server')}")
 PYTHON
 }
 
@@ -125,7 +125,7 @@ by_dds() { # by_dds KIND: the attacker's flood at its greatest rate; none: no at
     python3 meter.py meter.json $((seconds - 1)) "$controller" "$publisher"
     [[ -z "$attacking" ]] || wait "$attacking" || fault "the attacker: $(cat attacker.log)"
     taken_kib=$(memory_kib "$publisher")
-    [[ -n "$sanitizer" ]] || ((taken_kib < 60000)) || fault "$1: the host took $taken_kib KiB"
+    [[ -n "$sanitizer" ]] || ((taken_kib < 60000)) || fault "$1: the server took $taken_kib KiB"
     end_well "$1"
     stop_publisher
 }

@@ -83,7 +83,7 @@ only_printable publish.log
 taken_kib=$(memory_kib "$publisher")
 most_kib=60000
 [[ "$attack" != controllers_flooded ]] || most_kib=$((most_kib + 50 * 5 * 1024)) # 4 writers each.
-[[ -n "$sanitizer" ]] || ((taken_kib < most_kib)) || fault "the host took $taken_kib KiB"
+[[ -n "$sanitizer" ]] || ((taken_kib < most_kib)) || fault "the server took $taken_kib KiB"
 check_sizes hrtc.log publish.log
 
 # A foreign identity can be forged on the wire: its earlier messages may then end a service, and the
@@ -93,19 +93,19 @@ if [[ "$attack" == rtps_* ]]; then
     case $attack in
         rtps_motion_deaf)
             # Waits until the server reports the motion through another writer.
-            grep -q 'controller victim hears no motion: another writer' publish.log \
-                || fault 'the host made no other writer'
-            grep -Eq 'motion of host .* was lost for [0-9]+ ms though it was there' hrtc.log \
+            grep -q 'controller victim receives no motion: a new writer' publish.log \
+                || fault 'the server made no other writer'
+            grep -Eq 'motion of server .* was lost for [0-9]+ ms by a forged packet' hrtc.log \
                 || fault 'hrtc tells nothing'
             # Motion from the other writer is accepted.
             check report.json scene.motion_regained '>=' 2 models.0.pose.refused.not_newer '<=' 20
             ;;
         rtps_pieces_deaf)
-            grep -q "pieces don't reach controller victim: other writers" publish.log \
-                || fault 'the host made no other writers'
+            grep -q "pieces don't reach controller victim: new writers" publish.log \
+                || fault 'the server made no other writers'
             ;;
         rtps_participants)
-            grep -Eqs "$crowd" publish.log || fault 'the host counts no participants'
+            grep -Eqs "$crowd" publish.log || fault 'the server counts no participants'
             ;;
     esac
     was_held_up report.json || check report.json force.max_step_n '<' 0.45
@@ -123,8 +123,8 @@ check report.json frames '>' 500 models.0.pose.followed == 1 models.0.pose.accep
 # the loop or the server, the force fades, and the hand sinks in meanwhile; it may stall the server
 # longer than its lease.
 if ! was_held_up report.json && "$check_report" report.json safety.begun.stale == 0 >/dev/null; then
-    check report.json force.max_n '<' 1.4 force.max_step_n '<' 0.2 wire.host_lost == 0 \
-        safety.begun.host == 0
+    check report.json force.max_n '<' 1.4 force.max_step_n '<' 0.2 wire.server_lost == 0 \
+        safety.begun.server == 0
 fi
 check_contact report.json force.contact_share 0.3
 [[ $(grep -c 'controller victim subscribed' publish.log) == 1 ]] || fault 'it was subscribed again'
@@ -141,18 +141,18 @@ case $attack in
         ((said <= 40 * (SECONDS + 1))) || fault "$said lines of a stranger's visits"
         ;;
     controllers_flooded) # More than a server accepts of one process.
-        grep -q 'refused of attacker .*: more pieces asked for in a second' publish.log \
-            || fault 'the host tells of no rate'
+        grep -q 'refused from attacker .*: more pieces requested in a second' publish.log \
+            || fault 'the server tells of no rate'
         ;;&
     controllers_flooded | participants_flooded)
         grep -Eq 'attacker .* has [0-9]+ participants on this domain' publish.log \
-            || fault 'the host counts no participants'
+            || fault 'the server counts no participants'
         ;;
     endpoints_flooded) ;; # They belong to no service.
     wanted_* | telemetry_*)
-        grep -q 'refused of attacker (process [0-9]* on ' publish.log \
-            || fault 'the host names nobody'
-        grep -q '^refusals of attacker.*: [0-9]* more, ' publish.log \
+        grep -q 'refused from attacker (process [0-9]* on ' publish.log \
+            || fault 'the server names nobody'
+        grep -q '^refusals from attacker.*: [0-9]* more, ' publish.log \
             || fault '--watch names nobody'
         ! grep -q '77777777' publish.log || fault 'forged telemetry is shown'
         ;;
@@ -165,7 +165,7 @@ case $attack in
         check report.json refused == 1 refused.0.identity '>=' "$least"
         [[ $attack != catalogue_flooded ]] || check report.json refused.0.model_number '>=' 1
         [[ $attack != objects_flooded ]] || check report.json refused.0.object_number '>=' 1
-        grep -q 'refused of attacker (process [0-9]* on ' hrtc.log || fault 'hrtc names nobody'
+        grep -q 'refused from attacker (process [0-9]* on ' hrtc.log || fault 'hrtc names nobody'
         ;;
 esac
 

@@ -34,7 +34,7 @@ false_claim buckets '.*bucket '
 lie base_errors
 code=0
 "$inspect" base_errors.spm >said.txt 2>&1 || code=$?
-{ ((code == 1)) && grep -q 'false claim: error bounds: (.*) of the surface is ' said.txt; } \
+{ ((code == 1)) && grep -q 'false claim: error bounds: the surface point (.*) is ' said.txt; } \
     || fault "base_errors ended with $code: $(cat said.txt)"
 
 for unfit in origin far quantum; do

@@ -67,14 +67,14 @@ RawRtps::Datagram begin_message(const RawRtps::Guid& writer, std::uint8_t kind, 
 
 } // namespace
 
-RawRtps::Datagram RawRtps::later_motion(const Guid& writer, std::uint64_t host_epoch)
+RawRtps::Datagram RawRtps::later_motion(const Guid& writer, std::uint64_t server_epoch)
 {
     constexpr std::array<double, 8> kPlace{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     constexpr std::uint16_t kPayload = 4 + 8 + 8 + 8 + 4 + 4 + 4 + 4 + 64;
     Datagram datagram = begin_message(writer, 0x15, 0x05, 20 + kPayload);
     append_sequence(datagram, kMuchLater);
     datagram.insert(datagram.end(), {0, 1, 0, 0}); // Little-endian CDR.
-    append(datagram, host_epoch);
+    append(datagram, server_epoch);
     append(datagram, ~std::uint64_t{0}); // Serial number, the largest.
     append(datagram, std::uint64_t{1});  // Time.
     append(datagram, std::uint32_t{1});  // Number of objects.
@@ -88,7 +88,7 @@ RawRtps::Datagram RawRtps::later_motion(const Guid& writer, std::uint64_t host_e
     return datagram;
 }
 
-RawRtps::Datagram RawRtps::later_heartbeat(const Guid& writer, std::uint64_t /*host_epoch*/)
+RawRtps::Datagram RawRtps::later_heartbeat(const Guid& writer, std::uint64_t /*server_epoch*/)
 {
     static std::uint32_t count = 1'000'000;
     Datagram datagram = begin_message(writer, 0x07, 0x01, 28);

@@ -17,9 +17,9 @@ public:
 
     /// Sample of a server's motion, in the name of that writer, with the sequence number 2^40 and
     /// the largest serial number: object 0 is at the origin.
-    [[nodiscard]] static Datagram later_motion(const Guid& writer, std::uint64_t host_epoch);
+    [[nodiscard]] static Datagram later_motion(const Guid& writer, std::uint64_t server_epoch);
     /// Heartbeat in the writer's name: all samples before 2^40 are gone.
-    [[nodiscard]] static Datagram later_heartbeat(const Guid& writer, std::uint64_t host_epoch);
+    [[nodiscard]] static Datagram later_heartbeat(const Guid& writer, std::uint64_t server_epoch);
 
     /// Listens on one of the domain's discovery ports.
     explicit RawRtps(std::uint32_t domain);

@@ -72,7 +72,7 @@ public:
     void offer(std::uint32_t number, const std::string& name, const ContentHash& hash)
     {
         tactus_v5_CatalogueEntry entry = {};
-        entry.host_epoch = epoch_;
+        entry.server_epoch = epoch_;
         entry.model = number;
         name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
         scene_.copy(static_cast<char*>(entry.scene), kMaxNameBytes);
@@ -132,7 +132,7 @@ private:
             payload, {model_.store().hash(), 0, static_cast<std::uint32_t>(key.kind), key.number},
             bytes);
         tactus_v5_Pieces sample = {};
-        sample.host_epoch = epoch_;
+        sample.server_epoch = epoch_;
         sample.sent = ++sent_;
         const auto count = static_cast<std::uint32_t>(payload.size());
         sample.payload = {count, count, reinterpret_cast<std::uint8_t*>(payload.data()), false};

@@ -5,7 +5,7 @@
 # checked period by period, compared with a run without them.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 source "$(dirname "$0")/force_figures.sh"
-readonly squatter=$4 lying_host=$5 attack=$6
+readonly squatter=$4 lying_server=$5 attack=$6
 
 model bumpy-sphere-20000 bumpy.spm
 cat >toy.gltf <<'GLTF'
@@ -26,7 +26,7 @@ squat() {
 # strike LOG: starts a server of the scene that behaves correctly until a tool is near its object;
 # its id is in $striking.
 strike() {
-    "$lying_host" "$domain" bumpy.spm 0.002 strike 0.015 >"$1" 2>&1 &
+    "$lying_server" "$domain" bumpy.spm 0.002 strike 0.015 >"$1" 2>&1 &
     striking=$!
     started+=("$striking")
     wait_for_line "$1" 'ready on DDS domain'
@@ -66,15 +66,15 @@ case $attack in
         start_publisher toy.gltf --scene toy --watch
         touch_scene --scene toy
         strike strike.log
-        wait_for_line hrtc.log "warning: scene 'toy' is offered by a second server, lying_host"
+        wait_for_line hrtc.log "warning: scene 'toy' is offered by a second server, lying_server"
         wait_for_more_frames 500 publish.log victim
         stop KILL "$publisher"
         wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
-        wait_for_line hrtc.log "scene 'toy' is offered by lying_host"
+        wait_for_line hrtc.log "scene 'toy' is now offered by lying_server"
         if [[ $attack == squat_restarted ]]; then
             start_publisher toy.gltf --scene toy --watch
-            wait_for_line publish.log "warning: scene 'toy' is offered by lying_host"
-            wait_for_line hrtc.log "scene 'toy' is offered by spm_publish"
+            wait_for_line publish.log "warning: scene 'toy' is offered by lying_server"
+            wait_for_line hrtc.log "scene 'toy' is now offered by spm_publish"
         fi
         wait_for_more "$controller" 6000
         stop_hrtc
@@ -89,14 +89,14 @@ case $attack in
         start_publisher toy.gltf --scene toy --watch
         strike strike.log
         touch_scene --scene "toy@$machine:$publisher" --failover any
-        wait_for_line hrtc.log "warning: scene 'toy' is offered by a second server, lying_host"
-        wait_for_line publish.log "warning: scene 'toy' is offered by lying_host"
+        wait_for_line hrtc.log "warning: scene 'toy' is offered by a second server, lying_server"
+        wait_for_line publish.log "warning: scene 'toy' is offered by lying_server"
         stop TERM "$striking"
         stop KILL "$publisher"
         wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
         start_publisher toy.gltf --scene toy --watch
         began=$(now_ms)
-        wait_for_line hrtc.log "scene 'toy' is followed as spm_publish"
+        wait_for_line hrtc.log "scene 'toy' now follows spm_publish"
         echo "followed $(($(now_ms) - began)) ms after it was ready"
         wait_for_contact publish.log victim
         stop_hrtc
@@ -110,7 +110,7 @@ case $attack in
         # intended one can be named.
         strike strike.log
         start_publisher toy.gltf --scene toy --watch
-        wait_for_line publish.log "warning: scene 'toy' is offered by lying_host"
+        wait_for_line publish.log "warning: scene 'toy' is offered by lying_server"
         touch_scene --scene "toy@$machine:$publisher"
         wait_for_more_frames 500 publish.log victim
         stop_hrtc
@@ -136,7 +136,7 @@ case $attack in
         stop_hrtc
         grep -q "warning: model 'bumpy' is offered by a second server" hrtc.log \
             || fault 'no word of the second server'
-        check report.json servers.namesake '>=' 1 wire.host_lost == 0 \
+        check report.json servers.namesake '>=' 1 wire.server_lost == 0 \
             models.0.pieces_overdue == 0 safety.begun.starved == 0
         [[ $kind == forger ]] || check report.json models.0.pieces_refused == 0
         check_force 0.5
@@ -153,7 +153,7 @@ case $attack in
         wait_for_line hrtc.log "the server of scene 'toy', spm_publish"
         start_publisher toy.gltf --scene toy --watch
         began=$(now_ms)
-        wait_for_line hrtc.log "scene 'toy' is followed as spm_publish"
+        wait_for_line hrtc.log "scene 'toy' now follows spm_publish"
         echo "followed $(($(now_ms) - began)) ms after it was ready"
         wait_for_contact publish.log victim
         wait_for_more_frames 500 publish.log victim

@@ -38,7 +38,7 @@ const char* name_of(Verb verb)
                                                     "step_damaging",
                                                     "step_reversing",
                                                     "step_repeating",
-                                                    "change_host",
+                                                    "change_server",
                                                     "step_frame_at_request",
                                                     "step_frame_at_piece",
                                                     "step_frame_at_hand_over"};
@@ -110,7 +110,7 @@ bool QueueWorld::apply(Verb verb)
 {
     bool is_new = true;
     had_losses_ = had_losses_ || verb == Verb::be_late || verb == Verb::step_losing ||
-                  verb == Verb::step_damaging || verb == Verb::change_host;
+                  verb == Verb::step_damaging || verb == Verb::change_server;
     switch (verb)
     {
     case Verb::adopt:
@@ -140,8 +140,8 @@ bool QueueWorld::apply(Verb verb)
     case Verb::be_late:
         want({}, kRequestTimeoutFrames + 1);
         break;
-    case Verb::change_host:
-        link_.state() == LinkState::connected ? link_.lose_host() : link_.regain_host();
+    case Verb::change_server:
+        link_.state() == LinkState::connected ? link_.lose_server() : link_.regain_server();
         break;
     default:
         is_new = step(verb);
@@ -155,7 +155,7 @@ bool QueueWorld::step(Verb verb)
 {
     using Enum = std::underlying_type_t<Verb>;
     const auto beyond = static_cast<Enum>(verb) - static_cast<Enum>(Verb::step);
-    link_.weather = verb < Verb::change_host ? static_cast<Weather>(beyond) : Weather::delivers;
+    link_.weather = verb < Verb::change_server ? static_cast<Weather>(beyond) : Weather::delivers;
     const auto frame = [this] { frame_in_the_middle(); };
     link_.at_request = verb == Verb::step_frame_at_request ? frame : std::function<void()>{};
     link_.before_piece = verb == Verb::step_frame_at_piece ? frame : std::function<void()>{};
@@ -165,7 +165,7 @@ bool QueueWorld::step(Verb verb)
     ledger_.begin_step();
     chunk_loader_.step(now_ns_);
     return verb == Verb::step ||
-           (verb < Verb::change_host ? link_.was_weather_felt() : had_middle_);
+           (verb < Verb::change_server ? link_.was_weather_felt() : had_middle_);
 }
 
 void QueueWorld::adopt()
@@ -257,9 +257,9 @@ void QueueWorld::settle()
 {
     constexpr int kFrames = 24;
     unpin();
-    if (link_.state() == LinkState::host_gone)
+    if (link_.state() == LinkState::server_gone)
     {
-        static_cast<void>(apply(Verb::change_host));
+        static_cast<void>(apply(Verb::change_server));
     }
     for (int i = 0; i < kFrames && !ledger_.has_failed() && !is_settled(); ++i)
     {

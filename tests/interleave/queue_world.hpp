@@ -37,7 +37,7 @@ enum class Verb : std::uint8_t
     step_damaging,
     step_reversing,
     step_repeating,
-    change_host, ///< The server disappears, or another one appears.
+    change_server, ///< The server disappears, or another one appears.
     /// Steps with a frame in the middle: adopt, evict, want everything.
     step_frame_at_request,
     step_frame_at_piece,

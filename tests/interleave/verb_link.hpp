@@ -69,12 +69,12 @@ public:
         }
     }
 
-    void lose_host()
+    void lose_server()
     {
-        state_ = LinkState::host_gone;
+        state_ = LinkState::server_gone;
         on_their_way_.clear();
     }
-    void regain_host()
+    void regain_server()
     {
         state_ = LinkState::connected;
         ++session_;

@@ -203,10 +203,10 @@ TEST(ModelLife, is_wanted_as_soon_as_a_tool_that_rests_is_near)
 }
 
 /// The tool is held at the box's border without a force, and the frames are counted.
-TEST(ModelLife, a_tool_stops_before_a_model_whose_host_is_gone_and_goes_on_when_it_is_back)
+TEST(ModelLife, a_tool_stops_before_a_model_whose_server_is_gone_and_goes_on_when_it_is_back)
 {
     Row sut(1, 1);
-    sut.rig->link().lose_host();
+    sut.rig->link().lose_server();
     const double radius_m = sut.options.tools[0].radius_m;
     std::uint32_t walled = 0;
     for (int i = 0; i < 600; ++i)
@@ -219,7 +219,7 @@ TEST(ModelLife, a_tool_stops_before_a_model_whose_host_is_gone_and_goes_on_when_
     }
     EXPECT_GT(walled, 200U);
     EXPECT_EQ(sut.output.models[0].stage, ModelStage::wanted);
-    sut.rig->link().regain_host();
+    sut.rig->link().regain_server();
     EXPECT_LT(sut.until(ModelStage::resident, 0, 0, 0.05), 50U);
     EXPECT_EQ(sut.rig->chunk_loader().counters().overdue, 0U);
     for (int i = 0; i < 300; ++i)
@@ -232,10 +232,10 @@ TEST(ModelLife, a_tool_stops_before_a_model_whose_host_is_gone_and_goes_on_when_
 
 /// A silent server blocks nothing permanently: its model becomes known again, and is requested
 /// later while the tool stays.
-TEST(ModelLife, a_model_whose_host_is_silent_gives_its_room_to_others_and_comes_when_it_speaks)
+TEST(ModelLife, a_model_whose_server_is_silent_gives_its_room_to_others_and_comes_when_it_speaks)
 {
     Row sut(2, 1, {}, false, true, 1);
-    sut.rig->link({0}).lose_host();
+    sut.rig->link({0}).lose_server();
     sut.step(0, 0.05);
     EXPECT_LT(sut.until(ModelStage::wanted, 0, 0, 0.05), 5U);
     std::vector<ModelStage> stages{ModelStage::wanted};
@@ -259,7 +259,7 @@ TEST(ModelLife, a_model_whose_host_is_silent_gives_its_room_to_others_and_comes_
     // Another model occupies the memory.
     EXPECT_LT(sut.until(ModelStage::resident, 1, 1, 0.05), 1'500U);
     EXPECT_EQ(sut.output.models[0].stage, ModelStage::known);
-    sut.rig->link({0}).regain_host();
+    sut.rig->link({0}).regain_server();
     EXPECT_LT(sut.until(ModelStage::resident, 0, 0, 0.05), 400U);
     expect_same_again(sut.rig->finish_recording());
 }
@@ -277,7 +277,7 @@ TEST(ModelLife, room_that_is_given_back_is_for_the_most_urgent_one_that_waits)
     };
     for (const std::uint32_t model : {0U, 1U, 2U})
     {
-        sut.rig->link({model}).lose_host();
+        sut.rig->link({model}).lose_server();
     }
     place(0, 0.03);
     EXPECT_LT(sut.until(ModelStage::wanted, 0, 0, 0.05), 5U);
@@ -374,11 +374,11 @@ public:
             {
                 if (silent_until_[i] == frame && frame > 0)
                 {
-                    row_.rig->link({i}).regain_host();
+                    row_.rig->link({i}).regain_server();
                 }
                 if (silent_until_[i] <= frame && random_.one_in(400))
                 {
-                    row_.rig->link({i}).lose_host();
+                    row_.rig->link({i}).lose_server();
                     silent_until_[i] = frame + 1 + random_.below(1'500U);
                 }
             }
@@ -392,7 +392,7 @@ public:
     {
         for (std::uint32_t i = 0; i < models(); ++i)
         {
-            row_.rig->link({i}).regain_host();
+            row_.rig->link({i}).regain_server();
         }
         for (Vec3& goal : goals_)
         {
@@ -524,7 +524,7 @@ private:
 };
 
 /// Memory for three of the largest models suffices for two wanted ones under any fragmentation.
-TEST(ModelLife, laws_hold_whatever_tools_links_and_hosts_do)
+TEST(ModelLife, laws_hold_whatever_tools_links_and_servers_do)
 {
     std::uint32_t changes = 0;
     std::uint32_t given_back = 0;
@@ -689,8 +689,8 @@ struct WantedBase : Row
 TEST(ReplayQueues, takes_no_second_event_of_a_base_mesh_until_the_frame_knows_of_the_first)
 {
     using enum QueueEventKind;
-    const std::string back = "model 0: cells are given back that weren't lent";
-    const std::string came = "model 0: its base mesh comes where it isn't wanted";
+    const std::string back = "model 0: cells are returned that were not lent";
+    const std::string came = "model 0: its base mesh arrives without a request";
     EXPECT_EQ(WantedBase().open({base_back, base_back}), back);
     EXPECT_EQ(WantedBase().open({base_back, arrival}), came);
     EXPECT_EQ(WantedBase().open({arrival, base_back}), back);

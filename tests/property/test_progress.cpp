@@ -260,7 +260,7 @@ TEST(Coarsening, what_a_tool_leaves_behind_is_merged_in_a_small_cache_too)
     manner.diagonal_m = model.diagonal_m;
     manner.radius_diag = kRadius_diag;
     manner.step_m = 0.004 * model.diagonal_m;
-    manner.turn_rad = 0.05;
+    manner.rotation_rad = 0.05;
     manner.rotation_rate = [&](std::uint64_t) { return random.between(-1.0, 1.0); };
     SurfaceSlide slide(tree, manner, place_at_distance(model, random, 0.02 * model.diagonal_m));
     Vec3 goal(0.0, 0.0, 0.0);

@@ -275,13 +275,13 @@ TEST(SceneChanges, tell_how_far_an_object_at_the_tool_went_and_took_it_along)
         sut.rig->place_object(pose);
         const ToolOutput output = sut.step(sut.pressed_m());
         EXPECT_NEAR(output.object_way_m, 1e-4, 1e-12);
-        EXPECT_EQ(output.object_turn_rad, 0.0);
+        EXPECT_EQ(output.object_rotation_rad, 0.0);
         EXPECT_NEAR((output.carried_m - Vec3(0.0, 0.0, 1e-4)).norm(), 0.0, 1e-12);
     }
     pose.rotation = Eigen::AngleAxisd(1e-3, Vec3::UnitX()).toRotationMatrix();
     sut.rig->place_object(pose);
     const ToolOutput turned = sut.step(sut.pressed_m());
-    EXPECT_NEAR(turned.object_turn_rad, 1e-3, 1e-9);
+    EXPECT_NEAR(turned.object_rotation_rad, 1e-3, 1e-9);
     EXPECT_GE(turned.object_way_m, turned.carried_m.norm());
     for (int i = 0; i < 300; ++i)
     {

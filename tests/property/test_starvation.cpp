@@ -58,7 +58,7 @@ TEST(StarvationOfMany, sixteen_tools_among_a_hundred_objects_leave_a_touch_as_it
     for (const auto others : {GreedyCase::Others::pass, GreedyCase::Others::teleport})
     {
         greedy.others = others;
-        greedy.hands_diag_per_s = 4.0;
+        greedy.operators_diag_per_s = 4.0;
         const GreedyFigures among_others = run_greedy(model, greedy, trial_length(600), seed);
         EXPECT_EQ(among_others.broken, "");
         EXPECT_EQ(among_others.frames, alone.frames);

@@ -152,7 +152,7 @@ TEST_F(Validators, a_model_that_must_be_sound_ends_the_program_with_the_flaw)
             const_cast<BlockSide&>(sut().tree.side(some_block(true))).in_use = false; // NOLINT
             require_sound(sut());
         },
-        "blocks are in use, and some are neither that nor free");
+        "blocks are in use, but others are neither in use nor free");
 }
 
 TEST_F(Validators, a_rig_that_validates_ends_with_model_and_frame)
@@ -166,7 +166,7 @@ TEST_F(Validators, a_rig_that_validates_ends_with_model_and_frame)
             rig_.step(place_);
         },
         testing::ExitedWithCode(2),
-        "frame rig: frame [0-9]+, model .*: tree .*neither that nor free");
+        "frame rig: frame [0-9]+, model .*: tree .*neither in use nor free");
 }
 
 TEST_F(Validators, blocks_that_leak_or_are_lost_are_told)
@@ -174,12 +174,12 @@ TEST_F(Validators, blocks_that_leak_or_are_lost_are_told)
     const AbTree& tree = sut().tree;
     const std::uint32_t used = some_block(true);
     const std::uint32_t free = some_block(false);
-    expect_flaw(tree.side(used).in_use, false, "blocks are in use, and some are neither");
+    expect_flaw(tree.side(used).in_use, false, "blocks are in use, but others are neither");
     expect_flaw(tree.side(free).in_use, true, "is in use and free");
     expect_flaw(tree.side(free).parent, free, "is in a free list that is too long");
     expect_flaw(tree.side(free).parent, used, "is in use and free");
-    expect_flaw(tree.side(free).parent, kNoNode, "free list, and it counts others");
-    expect_flaw(tree.side(free).parent, 1'000'000U, "is free and not there");
+    expect_flaw(tree.side(free).parent, kNoNode, "free list, but the pool's count differs");
+    expect_flaw(tree.side(free).parent, 1'000'000U, "is free and out of range");
 }
 
 TEST_F(Validators, links_between_blocks_and_nodes_that_differ_are_told)
@@ -187,16 +187,16 @@ TEST_F(Validators, links_between_blocks_and_nodes_that_differ_are_told)
     const AbTree& tree = sut().tree;
     const std::uint32_t block = some_block(true);
     const std::uint32_t node = some_node(true);
-    expect_flaw(tree.side(block).parent, kNoNode, "is not where its parent has it");
+    expect_flaw(tree.side(block).parent, kNoNode, "is not linked from its parent");
     expect_flaw(tree.side(block).child, flipped(tree.side(block).child, 0),
-                "is not where its parent has it");
+                "is not linked from its parent");
     expect_flaw(tree.side(block).is_marked, true, "is marked after refit");
-    expect_flaw(tree.node(node).parent, kNoNode, "has a child that hangs elsewhere");
+    expect_flaw(tree.node(node).parent, kNoNode, "has a child that is linked elsewhere");
     expect_flaw(tree.node(node).is_queued, true, "is marked after refit");
-    expect_flaw(tree.node(node).in_use, false, "nodes are in use, and some are neither");
+    expect_flaw(tree.node(node).in_use, false, "nodes are in use, but others are neither");
     expect_flaw(tree.node(some_node(false)).in_use, true, "is in use and free");
     const auto first = static_cast<std::uint32_t>(std::countr_zero(tree.node(node).mask));
-    expect_flaw(tree.node(node).children[first], TreeRef{}, "is not where its parent has it");
+    expect_flaw(tree.node(node).children[first], TreeRef{}, "is not linked from its parent");
 }
 
 TEST_F(Validators, nodes_that_contradict_themselves_are_told)
@@ -210,7 +210,7 @@ TEST_F(Validators, nodes_that_contradict_themselves_are_told)
     expect_flaw(node.exact, flipped(node.exact, first), wrong_bits);
     expect_flaw(node.digit_map, node.digit_map ^ (1U << (4 * digit)), "lies off its path");
     expect_flaw(node.prefix, ~node.prefix, "lies off its path");
-    expect_flaw(node.mask, flipped(node.mask, first), "is not where its parent has it");
+    expect_flaw(node.mask, flipped(node.mask, first), "is not linked from its parent");
 }
 
 TEST_F(Validators, boxes_that_are_not_their_faces_are_told)
@@ -241,7 +241,7 @@ TEST_F(Validators, faces_in_a_wrong_lane_are_told)
     expect_flaw(tree.block(block).faces, std::uint16_t{0}, "is in use and empty");
     expect_flaw(tree.side(block).prims[lane], PrimId{}, "holds a prim that does not exist");
     expect_flaw(tree.side(block).prims[lane], tree.side(other).prims[first_lane(other)],
-                "is in another lane than it says");
+                "names another lane");
     std::uint32_t partly = block; // The last lane is free.
     while (std::popcount(tree.block(partly).faces) == kBlockFaces)
     {
@@ -259,7 +259,7 @@ TEST_F(Validators, pages_whose_bits_contradict_are_told)
     const PageTable::Meta& meta = sut().pages.meta(pinned);
     const PageTable::Meta& empty = sut().pages.meta(empty_slot());
     expect_flaw(empty.linked, std::uint64_t{1}, "has records and no page");
-    expect_flaw(empty.chunk, meta.chunk, "has a page that is found elsewhere or nowhere");
+    expect_flaw(empty.chunk, meta.chunk, "has a page that is not found in this slot");
     expect_flaw(meta.chunk, ChunkId{}, "has records and no page");
     expect_flaw(meta.chunk, ChunkId{sut().header.counts().chunks()},
                 "has a chunk that the model does not have");
@@ -276,11 +276,11 @@ TEST_F(Validators, a_table_whose_index_has_other_pages_is_told)
         ++unpinned;
     }
     const PageTable::Meta& meta = sut().pages.meta(unpinned);
-    expect_flaw(meta, PageTable::Meta{}, "pages are in its slots, and its index has others");
+    expect_flaw(meta, PageTable::Meta{}, "pages are in its slots, but its index differs");
     // The cache is not notified.
     const PageTable::Meta before = meta;
     sut().pages.evict(unpinned);
-    EXPECT_NE(flaw().find("slots are used here, and its pool counts others"), std::string::npos)
+    EXPECT_NE(flaw().find("slots are used, but the pool's count differs"), std::string::npos)
         << flaw();
     sut().pages.adopt(before.chunk, unpinned, before.touched, before.linked);
     EXPECT_EQ(flaw(), "");
@@ -309,7 +309,7 @@ TEST_F(Validators, what_is_requested_and_here_is_told)
         ++unpinned;
     }
     sut().pages.evict(unpinned);
-    EXPECT_EQ(flaw(), "chunk " + std::to_string(request.key.number) + " is requested and here");
+    EXPECT_EQ(flaw(), "chunk " + std::to_string(request.key.number) + " is requested and resident");
 }
 
 TEST_F(Validators, index_pages_of_a_wrong_size_are_told)
@@ -330,7 +330,7 @@ TEST_F(Validators, slots_that_go_back_twice_are_told)
     while (rig_.frame().pools().cache.queues.freed.try_push({ContentKind::chunk, 0}))
     {
     }
-    EXPECT_NE(flaw().find("slots are on their way back, more than are not its own"),
+    EXPECT_NE(flaw().find("slots are on their way back, more than there are free slots"),
               std::string::npos)
         << flaw();
 }
@@ -339,13 +339,13 @@ TEST_F(Validators, faces_of_the_forest_that_contradict_their_records_are_told)
 {
     const VertexForest::ActiveFace& face = changed_face();
     const VertexId other{face.corners[0] == VertexId{0} ? 1U : 0U};
-    expect_flaw(face.id, FaceId{face.id.value ^ 1U}, "is found elsewhere or nowhere");
+    expect_flaw(face.id, FaceId{face.id.value ^ 1U}, "is not found in its slot");
     expect_flaw(face.id, FaceId{sut().header.counts().face_ids()},
                 "holds a face that the model does not have");
-    expect_flaw(face.id, FaceId{}, "slots hold no face, and its pool counts others");
+    expect_flaw(face.id, FaceId{}, "slots hold no face, but the pool's count differs");
     expect_flaw(face.state, FaceState::base(), "is in the base state");
     expect_flaw(face.state, FaceState::after(face.state.record(), face.state.place() ^ 1U),
-                "is in a state that its record does not give it");
+                "is in a state that its record does not give");
     expect_flaw(face.corners, {other, other, other},
                 "lacks the vertex of the record that changed it last");
     expect_flaw(face.corners, {face.corners[1], face.corners[2], face.corners[0]},
@@ -393,7 +393,8 @@ TEST_F(Validators, a_face_in_an_earlier_state_breaks_the_finest_corner_law)
             std::ranges::count(face.corners, sut().header.counts().vertex_of(before.record())) != 0)
         {
             expect_flaw(last.depth, std::uint16_t{0}, "is no deeper than one that it depends on");
-            expect_flaw(face.state, before, "has a finer corner than what changed it last");
+            expect_flaw(face.state, before,
+                        "has a corner finer than the record that changed it last");
             return;
         }
     }

@@ -319,15 +319,15 @@ def check_carried(path, corners):
                         memory_mib=32)
     for i in [*range(64), 63, 0]:  # The last place of an object counts.
         many.place(i)
-    refuses(tactus.Error, "64 objects were placed or changed, or are being carried; run a frame",
+    refuses(tactus.Error, "64 changes of objects are pending; run a frame first",
             lambda: many.place(64))
     many.run([[0, 0, 1]])
     many.place(64)
 
 
-def check_host(path):
+def check_server(path):
     """A model from a server has the same answers as its file."""
-    host = subprocess.Popen([spm_publish, "--domain", str(DOMAIN), path],
+    server = subprocess.Popen([spm_publish, "--domain", str(DOMAIN), path],
                             stdout=subprocess.DEVNULL)
     try:
         model = tactus.Model.find("torus", domain=DOMAIN, wait_s=PATIENCE_S)
@@ -347,8 +347,8 @@ def check_host(path):
         expect(np.all(answers.kind == tactus.EXACT), "never exact")
         expect(np.array_equal(answers.lower_m, same.lower_m), "other distances than the file's")
     finally:
-        host.kill()
-        host.wait()
+        server.kill()
+        server.wait()
 
 
 
@@ -363,7 +363,7 @@ def check_begins_inside(path):
                 frame.run([place])
         return [str(warning.message) for warning in seen]
 
-    words = ["tool 0 begins inside a closed object, which holds it from within"]
+    words = ["tool 0 begins inside a closed object, whose surface keeps it inside"]
     expect(warned([0.05, 0, 0]) == words, "no warning of a tool inside")
     expect(warned([0, 0, 0]) == [], "a warning of a tool in the hole")
     expect(warned([0.05, 0, 0], query_only=True) == [], "a warning of a tool that passes through")
@@ -381,7 +381,7 @@ def check_refusals(path):
     refuses(TypeError, "positions_m", lambda: frame.run(None))
     refuses(ValueError, "element 2 is nan", lambda: frame.run([[0, 0, np.nan]]))
     refuses(ValueError, "element 0 is inf", lambda: frame.run([[np.inf, 0, 0]]))
-    refuses(ValueError, "element 1 is -1000000; below 1000000 m",
+    refuses(ValueError, "element 1 is -1000000; its magnitude must be below 1000000 m",
             lambda: frame.run([[0, -1e6, 0]]))
     refuses(ValueError, "pose.translation_m: 20000; -10000 to 10000",
             lambda: frame.place(0, translation_m=[0, 2e4, 0]))
@@ -412,7 +412,7 @@ def check_refusals(path):
     refuses(ValueError, "tools[0].shading_m: 1; 0.0001 to 0.1",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1, shading_m=1)],
                                  [tactus.Object()]))
-    refuses(ValueError, "tools[0].shading_m: 0.01; only a sphere feels it",
+    refuses(ValueError, "tools[0].shading_m: 0.01; only a sphere has force shading",
             lambda: tactus.Frame([tactus.Model(path)],
                                  [tactus.Tool(1, shape="box", half_m=[1, 1, 1], shading_m=0.01)],
                                  [tactus.Object()]))
@@ -420,7 +420,7 @@ def check_refusals(path):
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(1)], [tactus.Object(1)]))
     refuses(ValueError, "setup.tool_count: 0", lambda: tactus.Frame([model], [], [tactus.Object()]))
     refuses(ValueError, "memory_mib", lambda: tactus.Frame([model], [], [], memory_mib=0))
-    refuses(tactus.Error, "serves another frame",
+    refuses(tactus.Error, "is in another frame",
             lambda: tactus.Frame([model], [tactus.Tool(0.01)], [tactus.Object()]))
     refuses(tactus.Error, "memory: 104857 bytes; the models need ",
             lambda: tactus.Frame([tactus.Model(path)], [tactus.Tool(0.01)], [tactus.Object()],
@@ -518,7 +518,7 @@ def main():
         check_torque(path)
         check_feel(path)
         check_carried(path, corners)
-        check_host(path)
+        check_server(path)
         check_begins_inside(path)
         check_refusals(path)
         check_documentation(scratch)

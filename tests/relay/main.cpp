@@ -27,10 +27,10 @@ namespace tactus::relay
 namespace
 {
 
-constexpr int kMtuMin_bytes = 576; // Least MTU of an IPv4 host.
+constexpr int kMtuMin_bytes = 576; // Least MTU of an IPv4 server.
 constexpr int kMtuMax_bytes = 9'000;
 constexpr std::size_t kLineBytesMax = 200;
-constexpr const char* kHostAddress = "10.77.0.1";
+constexpr const char* kServerAddress = "10.77.0.1";
 constexpr const char* kControllerAddress = "10.77.0.2";
 
 struct Options
@@ -108,10 +108,10 @@ std::string dds_configuration(const char* interface)
         "</HeartbeatInterval><NackDelay>1 ms</NackDelay><PreEmptiveAckDelay>2 ms"
         "</PreEmptiveAckDelay><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>"
         "</Domain></CycloneDDS>",
-        interface, kHostAddress, kControllerAddress);
+        interface, kServerAddress, kControllerAddress);
 }
 
-std::string ready_line(const TapNetwork& host, const TapNetwork& controller)
+std::string ready_line(const TapNetwork& server, const TapNetwork& controller)
 {
     const auto side = [](const TapNetwork& network, const char* interface, const char* address)
     {
@@ -122,7 +122,7 @@ std::string ready_line(const TapNetwork& host, const TapNetwork& controller)
     };
     return nlohmann::ordered_json{
         {"pid", ::getpid()},
-        {"host", side(host, "host0", kHostAddress)},
+        {"server", side(server, "server0", kServerAddress)},
         {"controller", side(controller, "controller0", kControllerAddress)}}
         .dump();
 }
@@ -164,12 +164,12 @@ timespec wait_time(MonotonicTime due)
     return {left_ns / kSecond_ns, left_ns % kSecond_ns};
 }
 
-void serve(Relay& relay, const TapNetwork& host, const TapNetwork& controller,
+void serve(Relay& relay, const TapNetwork& server, const TapNetwork& controller,
            const sigset_t& while_waiting)
 {
     CommandLines lines;
     std::array<pollfd, 3> awaited{{{STDIN_FILENO, POLLIN, 0},
-                                   {host.tap_descriptor(), POLLIN, 0},
+                                   {server.tap_descriptor(), POLLIN, 0},
                                    {controller.tap_descriptor(), POLLIN, 0}}};
     while (stop_requested == 0)
     {
@@ -197,10 +197,10 @@ int run(int argc, char** argv)
     {
         return *code;
     }
-    const auto host = TapNetwork::create({"host0", kHostAddress, options.mtu_bytes});
-    if (!host)
+    const auto server = TapNetwork::create({"server0", kServerAddress, options.mtu_bytes});
+    if (!server)
     {
-        return line.fail("no network can be made here: " + host.error().text);
+        return line.fail("no network can be made here: " + server.error().text);
     }
     const auto controller =
         TapNetwork::create({"controller0", kControllerAddress, options.mtu_bytes});
@@ -212,10 +212,10 @@ int run(int argc, char** argv)
     static_cast<void>(::prctl(PR_SET_TIMERSLACK, 1UL));
     sigset_t while_waiting;
     stop_on_signals(while_waiting);
-    Relay relay(host.value(), controller.value(), options.condition, options.seed);
-    if (say(ready_line(host.value(), controller.value())))
+    Relay relay(server.value(), controller.value(), options.condition, options.seed);
+    if (say(ready_line(server.value(), controller.value())))
     {
-        serve(relay, host.value(), controller.value(), while_waiting);
+        serve(relay, server.value(), controller.value(), while_waiting);
     }
     return kExitDone;
 }

@@ -47,10 +47,10 @@ MonotonicTime now()
 
 } // namespace
 
-Relay::Relay(const TapNetwork& host, const TapNetwork& controller, const LinkCondition& condition,
+Relay::Relay(const TapNetwork& server, const TapNetwork& controller, const LinkCondition& condition,
              std::uint64_t seed)
-    : to_controller_{&host, &controller, OneWay(2 * seed)}
-    , to_host_{&controller, &host, OneWay(2 * seed + 1)}
+    : to_controller_{&server, &controller, OneWay(2 * seed)}
+    , to_server_{&controller, &server, OneWay(2 * seed + 1)}
     , condition_(condition)
     , buffer_(kFrameBytesMax)
 {
@@ -59,9 +59,9 @@ Relay::Relay(const TapNetwork& host, const TapNetwork& controller, const LinkCon
 void Relay::carry()
 {
     collect(to_controller_);
-    collect(to_host_);
+    collect(to_server_);
     deliver(to_controller_);
-    deliver(to_host_);
+    deliver(to_server_);
 }
 
 void Relay::collect(Direction& direction)
@@ -89,7 +89,7 @@ void Relay::deliver(Direction& direction)
 std::optional<MonotonicTime> Relay::next_due() const
 {
     const std::optional<MonotonicTime> one = to_controller_.way.next_due();
-    const std::optional<MonotonicTime> other = to_host_.way.next_due();
+    const std::optional<MonotonicTime> other = to_server_.way.next_due();
     return one && other ? std::min(one, other) : (one ? one : other);
 }
 
@@ -116,7 +116,7 @@ void Relay::follow(const Command& command)
         return;
     }
     const bool is_cut = std::holds_alternative<Cut>(command);
-    for (Direction* direction : {&to_controller_, &to_host_})
+    for (Direction* direction : {&to_controller_, &to_server_})
     {
         is_cut ? direction->way.cut() : direction->way.restore();
     }
@@ -129,7 +129,7 @@ std::string Relay::counts() const
         return json_of(direction.way.counts(), direction.from->frames_missed(),
                        direction.refused_by_system);
     };
-    return Json{{"to_controller", side(to_controller_)}, {"to_host", side(to_host_)}}.dump();
+    return Json{{"to_controller", side(to_controller_)}, {"to_server", side(to_server_)}}.dump();
 }
 
 } // namespace tactus::relay

@@ -23,7 +23,7 @@ class Relay
 public:
     /// Connects both networks, which must outlive it. Each direction has its own random numbers
     /// from `seed`.
-    Relay(const TapNetwork& host, const TapNetwork& controller, const LinkCondition& condition,
+    Relay(const TapNetwork& server, const TapNetwork& controller, const LinkCondition& condition,
           std::uint64_t seed);
 
     /// Takes all frames sent by both networks and delivers those due at the clock's time.
@@ -52,7 +52,7 @@ private:
     [[nodiscard]] std::string counts() const;
 
     Direction to_controller_;
-    Direction to_host_;
+    Direction to_server_;
     LinkCondition condition_;
     std::vector<std::byte> buffer_;
 };

@@ -50,9 +50,9 @@ struct CommandedWrench
 {
     ToolForce force;
     force.push = commanded.force.spring();
-    force.turn = commanded.torque.spring();
+    force.torque = commanded.torque.spring();
     ToolPeriod period;
-    period.hand_m = commanded.force.position_m;
+    period.device_m = commanded.force.position_m;
     period.turned_rad = commanded.torque.position_m;
     period.elapsed_periods = commanded.force.elapsed_periods;
     period.surface_damping_n_s_per_m = commanded.force.surface_damping_n_s_per_m;

@@ -82,10 +82,10 @@ RigOptions options_of(const TestModel& model, const GreedyCase& greedy)
 }
 
 /// Hand positions, frame by frame; the first does not depend on the others.
-class GreedyHands
+class GreedyOperators
 {
 public:
-    GreedyHands(const TestModel& model, const GreedyCase& greedy, std::uint64_t seed)
+    GreedyOperators(const TestModel& model, const GreedyCase& greedy, std::uint64_t seed)
         : model_(model)
         , greedy_(greedy)
         , tree_(model.faces)
@@ -94,13 +94,13 @@ public:
     {
         for (std::size_t i = 0; i < goals_.size(); ++i)
         {
-            const double speed = i == 0 ? kOwnSpeed_diag_per_s : greedy.hands_diag_per_s;
+            const double speed = i == 0 ? kOwnSpeed_diag_per_s : greedy.operators_diag_per_s;
             slides_.emplace_back(tree_, manner_of(model, speed, seed + i),
                                  somewhere(model, random_));
         }
     }
-    GreedyHands(const GreedyHands&) = delete; // Slides keep the tree's address.
-    GreedyHands& operator=(const GreedyHands&) = delete;
+    GreedyOperators(const GreedyOperators&) = delete; // Slides keep the tree's address.
+    GreedyOperators& operator=(const GreedyOperators&) = delete;
 
     const std::vector<Vec3>& next()
     {
@@ -163,7 +163,7 @@ GreedyFigures run_greedy(const TestModel& model, const GreedyCase& greedy, std::
                          std::uint64_t seed)
 {
     FrameRig rig(std::vector(greedy.models, &model), options_of(model, greedy));
-    GreedyHands hands(model, greedy, seed);
+    GreedyOperators hands(model, greedy, seed);
     if (greedy.all_resident)
     {
         load_everything(rig);

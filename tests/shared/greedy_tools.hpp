@@ -26,7 +26,7 @@ struct GreedyCase
 
     const char* name{""};
     Others others{Others::none};
-    double hands_diag_per_s{0.0};
+    double operators_diag_per_s{0.0};
     double follow_m_per_s{0.0}; ///< Proxy speed limit.
     std::uint32_t splits{64};
     std::size_t pool_bytes{std::size_t{8} << 20U};

@@ -28,9 +28,9 @@ public:
     {
         ToolForce force;
         force.push.force_n = output.force_n;
-        force.turn.force_n = output.torque_nm;
+        force.torque.force_n = output.torque_nm;
         ToolPeriod period;
-        period.hand_m = position_m;
+        period.device_m = position_m;
         period.elapsed_s = period_s_;
         period.stretch_m = (output.proxy_m - position_m).norm();
         period.faults = faults_of(output);

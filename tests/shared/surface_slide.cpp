@@ -57,7 +57,7 @@ Vec3 SurfaceSlide::next()
     const std::uint64_t turn = frame_ / kTurnFrames;
     const double rate =
         (1.0 - mix) * manner_.rotation_rate(turn) + mix * manner_.rotation_rate(turn + 1);
-    heading_ = tangent(heading_ + manner_.turn_rad * rate * normal_.cross(heading_), normal_);
+    heading_ = tangent(heading_ + manner_.rotation_rad * rate * normal_.cross(heading_), normal_);
     center_ += manner_.step_m * heading_;
     const Vec3 foot = tree_.nearest(center_).point_m;
     normal_ = normal_at(center_, foot, normal_);

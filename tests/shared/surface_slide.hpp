@@ -20,7 +20,7 @@ struct SlideManner
     double diagonal_m{0.0};
     double radius_diag{0.01};
     double step_m{0.0};           ///< Step of a frame.
-    double turn_rad{3.0e-3};      ///< Greatest rotation of the heading in a frame.
+    double rotation_rad{3.0e-3};  ///< Greatest rotation of the heading in a frame.
     std::uint32_t first_frame{0}; ///< Start within the turns and swings.
     /// Rate of each turn of kTurnFrames, in -1 .. 1.
     std::function<double(std::uint64_t turn)> rotation_rate;

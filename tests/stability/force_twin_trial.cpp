@@ -165,8 +165,8 @@ private:
         Last& last = last_[tool];
         if (last.has_waited && touches(now))
         {
-            const double by_hand_n = ToolSpec{}.stiffness_n_per_m * (goal_m - last.goal_m).norm();
-            const double step_n = (now.force_n - last.force_n).norm() - by_hand_n;
+            const double by_device_n = ToolSpec{}.stiffness_n_per_m * (goal_m - last.goal_m).norm();
+            const double step_n = (now.force_n - last.force_n).norm() - by_device_n;
             ++figures_.after_waits.trials;
             figures_.after_waits.observe(std::max(0.0, step_n));
             if (step_n > kForceStep_n)

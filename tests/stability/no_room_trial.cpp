@@ -195,7 +195,7 @@ private:
         budgets_.merges = random_.one_in(12) ? random_.below(3U) : budgets_.merges;
         has_clock_ = !random_.one_in(4);
         turns_scene_ = random_.one_in(3);
-        scene_turn_ = turns_scene_ ? cramped_turn(random_.in_cube(1.0), 1.0) : Mat3::Identity();
+        scene_rotation_ = turns_scene_ ? cramped_turn(random_.in_cube(1.0), 1.0) : Mat3::Identity();
         lay_out();
         RigOptions options = with_room_for_all();
         ToolSpec spec;
@@ -256,8 +256,8 @@ private:
         constexpr std::array<double, 4> kObjectScales{0.5, 3.0, kPoseScaleMin, kPoseScaleMax};
         object.scale =
             random_.one_in(12) ? kObjectScales[random_.below(kObjectScales.size())] : 1.0;
-        object.place_m = scene_turn_ * place_m;
-        object.rotation = scene_turn_ * rotation;
+        object.place_m = scene_rotation_ * place_m;
+        object.rotation = scene_rotation_ * rotation;
         objects_.push_back(object);
     }
     /// Distance between the centres of two objects of this model with `room_m` between their sides.
@@ -337,7 +337,7 @@ private:
         for (std::uint32_t i = 0; i < 2; ++i)
         {
             const double side = (i == 0) == is_closing ? -1.0 : 1.0;
-            objects_[i].place_m += scene_turn_ * Vec3(0, 0, side * step_m);
+            objects_[i].place_m += scene_rotation_ * Vec3(0, 0, side * step_m);
             rig_.place_object(objects_[i].pose(), i);
         }
     }
@@ -500,7 +500,7 @@ private:
     Budgets budgets_;
     bool has_clock_{true};
     bool turns_scene_{false};
-    Mat3 scene_turn_{Mat3::Identity()};
+    Mat3 scene_rotation_{Mat3::Identity()};
     std::vector<Object> objects_;
     FrameRig rig_;
     Vec3 place_m_{0.0, 0.0, 0.02};

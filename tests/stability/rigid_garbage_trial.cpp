@@ -22,10 +22,10 @@ namespace tactus::test
 namespace
 {
 
-constexpr std::int64_t kBodyFrame_ns = 1'000'000;
-constexpr double kBodyForceMax_n = 8.0;
-constexpr double kBodyTorqueMax_nm = 0.3;
-constexpr double kBodyRounding = 1e-12;
+constexpr std::int64_t kGarbageFrame_ns = 1'000'000;
+constexpr double kToolForceMax_n = 8.0;
+constexpr double kToolTorqueMax_nm = 0.3;
+constexpr double kGarbageRounding = 1e-12;
 /// Greatest change per frame that ForceFader permits while fading and returning.
 constexpr double kMostOfRange = kPeriod_s / kFadeTime_s + 2.0 * kPeriod_s / kRiseTime_s;
 constexpr double kSecondTurn_rad =
@@ -65,7 +65,7 @@ public:
     {
         figures_.name = "box on a plate, " + std::string(garbage.name);
         figures_.unit = "of the largest force or torque";
-        figures_.bound = 1.0 + kBodyRounding;
+        figures_.bound = 1.0 + kGarbageRounding;
         center_ = rig_.frame().tool(0).sphere().center;
         for (const Face& face : model_.faces)
         {
@@ -95,8 +95,8 @@ private:
         ToolSpec spec;
         spec.radius_m = 0.001;
         spec.core = Box{Vec3(0.02, 0.015, 0.004)};
-        spec.force_max_n = kBodyForceMax_n;
-        spec.torque_max_nm = kBodyTorqueMax_nm;
+        spec.force_max_n = kToolForceMax_n;
+        spec.torque_max_nm = kToolTorqueMax_nm;
         options.tools = {spec};
         Material rough;
         rough.static_friction = 0.3;
@@ -117,7 +117,7 @@ private:
                                 rest_m + std::max(-0.002, 0.02 - 0.2 * t));
         state.rotation = turned_about(Vec3(1, 0, 0), 0.05 * std::sin(5.0 * t)) *
                          turned_about(Vec3(0, 0, 1), 0.8 * t);
-        state.sample_time_ns = kBodyFrame_ns * (frame_ + 1'000);
+        state.sample_time_ns = kGarbageFrame_ns * (frame_ + 1'000);
         return state;
     }
 
@@ -126,21 +126,21 @@ private:
         ++figures_.trials;
         const ToolOutput& tool = output.tools[0];
         const ToolForce safe = safe_.both(tool, position_m);
-        for (const auto& [norm, most] : {std::pair(tool.force_n.norm(), kBodyForceMax_n),
-                                         std::pair(tool.torque_nm.norm(), kBodyTorqueMax_nm),
-                                         std::pair(safe.push.force_n.norm(), kBodyForceMax_n),
-                                         std::pair(safe.turn.force_n.norm(), kBodyTorqueMax_nm)})
+        for (const auto& [norm, most] : {std::pair(tool.force_n.norm(), kToolForceMax_n),
+                                         std::pair(tool.torque_nm.norm(), kToolTorqueMax_nm),
+                                         std::pair(safe.push.force_n.norm(), kToolForceMax_n),
+                                         std::pair(safe.torque.force_n.norm(), kToolTorqueMax_nm)})
         {
             figures_.observe(std::isfinite(norm) ? norm / most : kInfinity);
-            expect(norm <= most * (1.0 + kBodyRounding), std::to_string(norm) + " N or N m");
+            expect(norm <= most * (1.0 + kGarbageRounding), std::to_string(norm) + " N or N m");
         }
         if (safe_.gain() < 1.0 && !tool.halted && !tool.over_constrained)
         {
             expect((safe.push.force_n - sent_.push.force_n).norm() <=
-                       kMostOfRange * kBodyForceMax_n + kBodyRounding,
+                       kMostOfRange * kToolForceMax_n + kGarbageRounding,
                    "the force jumps");
-            expect((safe.turn.force_n - sent_.turn.force_n).norm() <=
-                       kMostOfRange * kBodyTorqueMax_nm + kBodyRounding,
+            expect((safe.torque.force_n - sent_.torque.force_n).norm() <=
+                       kMostOfRange * kToolTorqueMax_nm + kGarbageRounding,
                    "the torque jumps");
         }
         sent_ = safe;
@@ -151,7 +151,8 @@ private:
         place_ = now;
         expect(!episodes_.is_recovered() || (tool.in_contact && sent_.push.force_n.norm() > 0.5),
                "nothing is felt again");
-        episodes_.check(output, sent_.push.force_n.norm() > 0.0 || sent_.turn.force_n.norm() > 0.0);
+        episodes_.check(output,
+                        sent_.push.force_n.norm() > 0.0 || sent_.torque.force_n.norm() > 0.0);
     }
 
     void expect(bool holds, const std::string& otherwise) { episodes_.expect(holds, otherwise); }

@@ -45,10 +45,10 @@ Vec3 middle_of(const TestModel& model)
 
 /// Hand that approaches faces of the object and departs from it, by a share of the remaining
 /// distance, while rotating.
-class BodyHand
+class RigidToolOperator
 {
 public:
-    BodyHand(const TestModel& model, std::uint64_t seed)
+    RigidToolOperator(const TestModel& model, std::uint64_t seed)
         : model_(model), random_(Random::seeded(seed)), middle_(middle_of(model))
     {
         state_.position_m = away();
@@ -283,10 +283,10 @@ private:
             const Eigen::AngleAxisd turn(hand.rotation * last_hand_.rotation.transpose());
             const double way_m =
                 (hand.position_m - last_hand_.position_m).norm() + arm_m_ * std::abs(turn.angle());
-            const double by_hand_n = kWall_n_per_m * way_m;
-            const double most_n = by_hand_n + kCatchUp_n_per_s * kPeriod_s;
+            const double by_device_n = kWall_n_per_m * way_m;
+            const double most_n = by_device_n + kCatchUp_n_per_s * kPeriod_s;
             const double most_nm =
-                arm_m_ * by_hand_n + kCatchUpShare_per_s * kTorqueMax_nm * kPeriod_s;
+                arm_m_ * by_device_n + kCatchUpShare_per_s * kTorqueMax_nm * kPeriod_s;
             const double step =
                 std::max((output.force_n - last_output_.force_n).norm() / most_n,
                          (output.torque_nm - last_output_.torque_nm).norm() / most_nm);
@@ -308,7 +308,7 @@ private:
     }
 
     const RigidTrial& trial_;
-    BodyHand hand_;
+    RigidToolOperator hand_;
     Stage stage_;
     RigidFigures figures_;
     bool is_run_over_{false}; ///< True until the tool has been clear again.

@@ -377,7 +377,7 @@ TEST(DeviceClasses, have_the_caps_of_the_page)
             const StiffnessLimits limits = stiffness_limits(one.device, period_s);
             std::printf("%s %5.0f Hz: %.0f / %.0f / %.0f -> %.0f\n", one.name, 1.0 / period_s,
                         limits.sampling_n_per_m, limits.quantisation_n_per_m, limits.device_n_per_m,
-                        limits.cap_n_per_m);
+                        limits.limit_n_per_m);
         }
     }
     EXPECT_DOUBLE_EQ(stiffness_limit(kTouchClass, 1e-3), 400.0);
@@ -442,11 +442,11 @@ TurningFigures turn_into_wall(const TurningTrial& trial)
         late_nm[0] = angle < 0.0 ? -trial.stiffness_nm_per_rad * angle : 0.0;
         const ToolForce out = condition(
             conditioner, {{}, {late_nm.back() * axis, turned, trial.stiffness_nm_per_rad, 0.0, 1}});
-        figures.observer_error_j = std::max(figures.observer_error_j,
-                                            std::abs(out.turn.work_j - sim.energy().force_work_j));
-        figures.off_axis_nm = std::max(figures.off_axis_nm, out.turn.force_n.cross(axis).norm());
+        figures.observer_error_j = std::max(
+            figures.observer_error_j, std::abs(out.torque.work_j - sim.energy().force_work_j));
+        figures.off_axis_nm = std::max(figures.off_axis_nm, out.torque.force_n.cross(axis).norm());
         const double target = wanted_rad(i * 1e-3) - 0.1;
-        sim.step(out.turn.force_n, Eigen::AngleAxisd(target, axis).toRotationMatrix());
+        sim.step(out.torque.force_n, Eigen::AngleAxisd(target, axis).toRotationMatrix());
         figures.largest_work_j = std::max(figures.largest_work_j, sim.energy().force_work_j);
         if (i >= steps - 500)
         {
@@ -503,7 +503,7 @@ TEST(TurningWalls, that_are_too_stiff_are_scaled_down_with_their_force)
     const double cap = stiffness_limit(rotational_limits_of(kDeskClass), 1e-3);
     const ToolForce out = condition(sut, {{Vec3(0.0, 0.0, 4.0), {}, 100.0, 0.0, 1},
                                           {Vec3(0.1, 0.0, 0.0), {}, 2.0 * cap, 0.0, 1}});
-    EXPECT_NEAR(out.turn.force_n.x(), 0.05, 1e-12);
+    EXPECT_NEAR(out.torque.force_n.x(), 0.05, 1e-12);
     EXPECT_NEAR(out.push.force_n.z(), 2.0, 1e-12);
 }
 

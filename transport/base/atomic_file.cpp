@@ -19,16 +19,16 @@ namespace tactus
 namespace
 {
 
-/// Path length with its end mark; Linux and QNX accept no longer one.
+/// Maximum bytes of a path with its terminating zero, on Linux and QNX.
 constexpr std::size_t kLongestPath = 4096;
 
-/// Name of a partial file, readable by a signal handler.
+/// Path of a partial file, stored where a signal handler may read it.
 struct PendingSlot
 {
     enum State : int
     {
         unused,
-        reserved, ///< The slot is taken, its name not yet complete.
+        reserved, ///< In use, but `path` is not complete.
         pending,
     };
 
@@ -46,7 +46,7 @@ std::array<PendingSlot, AtomicFile::kMaxPending>& pending_slots()
     return slots;
 }
 
-/// Blocks the signals in this thread between creating a partial file and registering its name.
+/// Blocks the handled signals on this thread while a partial file is created and registered.
 class SignalPause
 {
 public:
@@ -68,7 +68,7 @@ private:
     sigset_t before_{};
 };
 
-/// Index of a free slot, now reserved; kMaxPending if all are taken.
+/// Reserves a free slot and returns its index; kMaxPending if none is free.
 std::size_t reserve_slot()
 {
     for (std::size_t i = 0; i < pending_slots().size(); ++i)
@@ -104,8 +104,8 @@ Refusal refuse(const std::filesystem::path& path, const std::string& reason)
     return {path.string() + ": can't be written: " + reason};
 }
 
-/// True if the path is a link that may stay while its target is replaced. In a folder like /tmp a
-/// link of another user could lead anywhere; the rule is that of Linux for opening files
+/// True if `path` is a link that may stay while its target is replaced. A link of another user in a
+/// folder like /tmp may lead anywhere; the rule is Linux's for opening files
 /// (fs.protected_symlinks).
 bool is_trusted_link(const std::filesystem::path& path)
 {
@@ -126,11 +126,11 @@ bool is_trusted_link(const std::filesystem::path& path)
            link.st_uid == folder.st_uid;
 }
 
-/// Creates a file beside `target` and stores its name in `name`; returns the descriptor, or -1 with
-/// errno.
+/// Creates a partial file beside `target` and sets `name` to its path. Returns the descriptor, or
+/// -1 with errno set.
 int make_partial(const std::filesystem::path& target, std::string& name)
 {
-    constexpr int kTries = 1000; // Killed processes with the same id may have left files.
+    constexpr int kTries = 1000; // Killed processes of the same id may have left files.
     for (int i = 0; i < kTries; ++i)
     {
         name = target.string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(i) +
@@ -149,7 +149,7 @@ int make_partial(const std::filesystem::path& target, std::string& name)
     return -1;
 }
 
-/// Makes a rename durable. Not every file system supports that; the file itself is already synced.
+/// Makes a rename durable, where the file system supports that. The file itself is already synced.
 void sync_directory(const std::filesystem::path& directory)
 {
     const int descriptor = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -169,14 +169,14 @@ Result<AtomicFile, Refusal> AtomicFile::create(const std::filesystem::path& path
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     {
         // Replacing a device or pipe is never intended.
-        return refuse(path, "it is a directory, device or pipe");
+        return refuse(path, "the path is a directory, device or pipe");
     }
     const bool follows = std::filesystem::exists(status) && is_trusted_link(path);
     const auto target =
         follows ? std::filesystem::canonical(path, code) : std::filesystem::absolute(path, code);
     if (code || !path.has_filename())
     {
-        return refuse(path, "it is no file name");
+        return refuse(path, "the path has no file name");
     }
     const std::size_t slot = reserve_slot();
     if (slot == kMaxPending)
@@ -192,7 +192,7 @@ Result<AtomicFile, Refusal> AtomicFile::create(const std::filesystem::path& path
     {
         const int reason = errno;
         release_slot(slot);
-        return refuse(path, std::string("no file can be made in its directory: ") +
+        return refuse(path, std::string("no file can be created in its directory: ") +
                                 std::strerror(reason));
     }
     std::memcpy(pending.path.data(), name.c_str(), name.size() + 1);
@@ -311,7 +311,7 @@ Result<Done, Refusal> AtomicFile::commit()
         return reason;
     }
     release_slot(slot_);
-    // The data are synced, so close has no errors left to report.
+    // The data are synced, so an error of close() loses nothing.
     ::close(std::exchange(descriptor_, -1));
     sync_directory(path_.parent_path());
     return Done{};

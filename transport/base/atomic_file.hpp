@@ -15,30 +15,28 @@
 namespace tactus
 {
 
-/// A file that appears as a whole or not at all. Bytes go to a file beside it, PATH.PID-N.partial;
-/// commit() makes them durable and renames that file. Until then the destructor removes it. One
-/// thread at a time; different files may be written from different threads. Every refusal names the
-/// path and the reason why it cannot be written.
+/// A file that appears as a whole or not at all. write() goes to a partial file beside it,
+/// PATH.PID-N.partial; commit() syncs that file and renames it. Without commit() the destructor
+/// removes it. One thread at a time; different files may be written on different threads. Every
+/// refusal names the path and the reason.
 class AtomicFile
 {
 public:
-    /// Maximum number of files open for writing in one process: the signal handler finds them in
-    /// memory of fixed size.
+    /// Maximum number of open partial files in one process. The signal handler finds them in memory
+    /// of fixed size.
     static constexpr std::size_t kMaxPending = 16;
 
-    /// Creates the partial file beside `path`. If `path` is a link, the link stays and its target
-    /// is replaced, unless another user owns the link in a folder where all may write; then the
-    /// link is replaced. Refused if `path` is not a regular file, or if its directory is missing or
-    /// cannot be written.
+    /// Creates the partial file beside `path`. If `path` is a link, its target is replaced; in a
+    /// folder like /tmp, a link of another user is replaced itself. Refused if `path` is not a
+    /// regular file, or if its directory is missing or cannot be written.
     [[nodiscard]] static Result<AtomicFile, Refusal> create(const std::filesystem::path& path);
 
-    /// Tests before a long run whether a file can be written, and leaves nothing behind. Returns
-    /// the reason if not.
+    /// Tests, before a long run, whether `path` can be written; leaves no file. Returns the reason
+    /// if not.
     [[nodiscard]] static std::optional<Refusal> probe(const std::filesystem::path& path);
 
-    /// Installs handlers by which SIGINT, SIGTERM and SIGHUP remove every partial file before they
-    /// end the process as usual. A signal that is ignored stays ignored. Replaces the program's own
-    /// handlers.
+    /// Installs handlers for SIGINT, SIGTERM and SIGHUP that remove every partial file and then end
+    /// the process as usual. Ignored signals stay ignored. Replaces the program's own handlers.
     static void remove_pending_on_signal();
 
     AtomicFile(AtomicFile&& other) noexcept;
@@ -47,13 +45,13 @@ public:
     AtomicFile& operator=(const AtomicFile&) = delete;
     ~AtomicFile();
 
-    /// Appends bytes. write_at() does not move the position of write().
+    /// Appends bytes at bytes(), which write_at() does not change.
     [[nodiscard]] Result<Done, Refusal> write(std::span<const std::byte> bytes);
-    /// Overwrites, or extends, at a byte offset from the start.
+    /// Overwrites or extends the file at a byte offset.
     [[nodiscard]] Result<Done, Refusal> write_at(std::uint64_t offset,
                                                  std::span<const std::byte> bytes);
-    /// Flushes to the disk and renames. After a refusal the old file is untouched and the partial
-    /// file is gone. Nothing may be written after commit().
+    /// Syncs the partial file and renames it to `path`. If refused, the old file is unchanged and
+    /// the partial file is removed. Write nothing afterwards.
     [[nodiscard]] Result<Done, Refusal> commit();
 
     /// Position of the next write().

@@ -6,11 +6,11 @@
 #include <string>
 #include <string_view>
 
-// Any thread, except the haptic one: texts allocate.
+// Any thread except the haptic one: strings allocate.
 namespace tactus
 {
 
-/// Number and noun: "1 brake", "2 brakes". An empty `many` is `one` with an s.
+/// Number and noun: "1 brake", "2 brakes". If `many` is empty, the plural is `one` with an s.
 [[nodiscard]] inline std::string counted(std::uint64_t number, std::string_view one,
                                          std::string_view many = {})
 {

@@ -16,7 +16,7 @@ namespace
 {
 
 constexpr std::size_t kFilesShown = 5;
-/// Limit, since a folder may have millions of entries.
+/// Maximum number of entries that are read, since a folder may have millions.
 constexpr std::size_t kEntriesMost = 10'000;
 
 } // namespace
@@ -27,13 +27,13 @@ std::string files_near(const std::filesystem::path& missing, std::string_view en
     const std::string whole = missing.string() + std::string(ending);
     if (std::filesystem::is_regular_file(whole, code))
     {
-        return "; " + printable_line(whole) + " is there";
+        return "; " + printable_line(whole) + " exists";
     }
     const std::filesystem::path folder = missing.parent_path();
     const std::string shown = printable_line(folder.string());
     if (!folder.empty() && !std::filesystem::is_directory(folder, code))
     {
-        return "; there is no folder " + shown;
+        return "; no such folder: " + shown;
     }
     return "; " + (folder.empty() ? "this folder" : shown) + " has " +
            files_in(folder.empty() ? "." : folder, ending);

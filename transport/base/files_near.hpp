@@ -6,15 +6,15 @@
 #include <string>
 #include <string_view>
 
-// Any thread, except the haptic one: reads a folder.
+// Any thread except the haptic one: reads a folder.
 namespace tactus
 {
 
-/// Suggestion for a missing file, to append to a message: "; runs/plate.spm is there" for
-/// runs/plate, otherwise a few of the files with that ending in its folder.
+/// Suggestion to append to a message about a missing file: "; runs/plate.spm is there" if
+/// runs/plate is missing; otherwise files of its folder that end in `ending`.
 [[nodiscard]] std::string files_near(const std::filesystem::path& missing, std::string_view ending);
 
-/// List of files: "a.spm, b.spm and 3 more", or "no .spm".
+/// List of a folder's files that end in `ending`: "a.spm, b.spm and 3 more", or "no .spm".
 [[nodiscard]] std::string files_in(const std::filesystem::path& folder, std::string_view ending);
 
 } // namespace tactus

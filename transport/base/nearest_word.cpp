@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-std::size_t pose_samples_between(std::string_view one, std::string_view other)
+std::size_t letters_between(std::string_view one, std::string_view other)
 {
     std::vector<std::size_t> row(other.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -39,8 +39,9 @@ std::string nearest_word(std::string_view word, std::span<const std::string_view
     std::size_t least = word.size() / 3 + 2;
     for (const std::string_view other : words)
     {
-        const std::size_t letters = pose_samples_between(word, other);
-        if (letters < std::min(least, other.size())) // Otherwise no letter would be the same.
+        const std::size_t letters = letters_between(word, other);
+        // So few edits keep at least one letter.
+        if (letters < std::min(least, other.size()))
         {
             least = letters;
             nearest = other;

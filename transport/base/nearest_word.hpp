@@ -6,12 +6,12 @@
 #include <string>
 #include <string_view>
 
-// Any thread, except the haptic one: texts allocate.
+// Any thread except the haptic one: strings allocate.
 namespace tactus
 {
 
-/// The one of `words` with the least edit distance to `word` (Levenshtein: letters inserted,
-/// removed or replaced), for a user's typing error. Empty when none is near.
+/// Member of `words` with the least edit distance to `word` (Levenshtein: letters inserted, removed
+/// or replaced), to correct a typing error. Empty if all are too far.
 [[nodiscard]] std::string nearest_word(std::string_view word,
                                        std::span<const std::string_view> words);
 

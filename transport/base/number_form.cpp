@@ -20,7 +20,7 @@ namespace tactus
 namespace
 {
 
-/// Shortest exact text, or text with `digits` significant digits.
+/// Number as text with `digits` significant digits; 0: the shortest exact text.
 std::string text_of(double number, int digits = 0)
 {
     std::array<char, 32> text{};
@@ -31,7 +31,7 @@ std::string text_of(double number, int digits = 0)
     return {text.data(), end};
 }
 
-/// A unit that users write after a number, in terms of the option's unit.
+/// Conversion of a unit that a user may write: number x `factor` is in the unit `meant`.
 struct WrittenUnit
 {
     std::string_view written;
@@ -49,10 +49,10 @@ bool is_within(double number, const NumberRange& range)
     return (number >= range.least && number <= range.most) || (range.may_be_zero && number == 0.0);
 }
 
-/// Value of a number with a unit after it, in the option's unit.
+/// Value of a number with a unit, converted to the option's unit; none if that is not possible.
 std::optional<double> without_unit(std::string_view text, const NumberRange& range)
 {
-    const std::size_t digits = text.find_last_of("0123456789.") + 1; // 0: no digits.
+    const std::size_t digits = text.find_last_of("0123456789.") + 1; // 0 without digits.
     const std::optional<double> number = parse_number(text.substr(0, digits));
     const std::string_view unit = text.substr(digits);
     if (!number || range.unit.empty())
@@ -69,7 +69,7 @@ std::optional<double> without_unit(std::string_view text, const NumberRange& ran
     return known == std::end(kWrittenUnits) ? std::nullopt : std::optional(*number * known->factor);
 }
 
-/// The probably intended number as text; empty if none is near.
+/// Number that the user probably intended, as text; empty if none is likely.
 std::string meant_by(std::string_view text, const NumberRange& range)
 {
     std::optional<double> number = parse_number(text);
@@ -77,14 +77,14 @@ std::string meant_by(std::string_view text, const NumberRange& range)
     {
         return std::string(text);
     }
-    // Small lengths are often written in mm.
+    // A length above its range is probably in mm.
     number = !number                                  ? without_unit(text, range)
              : range.unit == "m" && range.most <= 1.0 ? std::optional(*number * 1e-3)
                                                       : std::nullopt;
     return number && is_within(*number, range) ? text_of(*number, 9) : std::string();
 }
 
-/// Parts of a form's text.
+/// Names of a form's numbers, without brackets.
 struct Names
 {
     std::vector<std::string_view> all;
@@ -94,7 +94,7 @@ struct Names
 Names names_of(std::string_view text)
 {
     Names names;
-    for (std::size_t at = text.find(':') + 1; at <= text.size();) // Starts at 0 without a colon.
+    for (std::size_t at = text.find(':') + 1; at <= text.size();) // 0 without a colon.
     {
         const std::size_t end = std::min(text.find_first_of(",[]", at), text.size());
         if (end > at)
@@ -122,8 +122,8 @@ std::vector<std::string_view> words_of(std::string_view text)
     return words;
 }
 
-/// The probably intended value, with zeros for missing numbers if the form has no leading word;
-/// empty if none is near.
+/// Value that the user probably intended; empty if none is likely. If the form has no leading word,
+/// zeros replace missing numbers.
 std::string meant_by(const std::vector<std::string_view>& words, const NumberForm& form,
                      const Names& names)
 {
@@ -162,7 +162,7 @@ std::string fault_of_number(std::string_view name, std::string_view text, const 
     }
     if (without_unit(text, range))
     {
-        return std::string(name) + " is in " + std::string(range.unit) + ", without a unit";
+        return std::string(name) + " must be in " + std::string(range.unit) + ", without a unit";
     }
     return std::string(name) +
            (text.empty() ? " is missing" : " is '" + printable(text) + "', not a number");
@@ -196,7 +196,7 @@ Result<std::vector<double>, Refusal> read_numbers(std::string_view value, const 
     }
     if (std::ranges::count(names.counts, words.size()) == 0)
     {
-        return refusal("it has " + counted(words.size(), "number"));
+        return refusal("the value has " + counted(words.size(), "number"));
     }
     return numbers;
 }

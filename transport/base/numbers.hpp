@@ -8,7 +8,7 @@
 namespace tactus
 {
 
-/// Number that `text` as a whole spells, finite; none for any other text.
+/// Finite number that the whole `text` represents; none for any other text.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
 } // namespace tactus

@@ -10,8 +10,8 @@
 namespace tactus
 {
 
-/// Tests before long work whether a file can be written; returns the reason if not. An empty path
-/// passes.
+/// Tests, before a long run, whether a file can be written; returns the reason if not. An empty
+/// path passes.
 [[nodiscard]] std::optional<Refusal> probe_output(const std::string& path);
 
 /// Writes a text file as a whole or not at all; returns the reason if it fails.

@@ -12,7 +12,7 @@ namespace tactus
 namespace
 {
 
-/// True if a terminal obeys the UTF-8 character instead of showing it.
+/// True if a terminal executes the UTF-8 character instead of showing it.
 bool steers(std::string_view character) noexcept
 {
     const auto is_between = [character](std::string_view first, std::string_view last)

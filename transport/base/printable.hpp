@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-// Any thread, except the haptic one: texts allocate.
+// Any thread except the haptic one: strings allocate.
 namespace tactus
 {
 
@@ -16,15 +16,13 @@ namespace tactus
     return c >= ' ' && c <= '~';
 }
 
-/// Word from outside (a name, an option's value, a token of a file) for a message, filtered like
-/// printable_line(). Text beyond `longest` bytes is replaced by "...". [default: the length of a
-/// model's name]
+/// Name, option or token from outside, made fit for a message by printable_line(). Text beyond
+/// `longest` bytes is replaced by "...". [default: the length of a model's name]
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest = 63);
 
-/// Line of output without control characters. Every byte that is neither ASCII nor part of a UTF-8
-/// character becomes '?', and so does every character that steers a terminal: controls (C0, C1,
-/// U+007F), line and paragraph separators, and changes of text direction. Other characters stay,
-/// since users name their files in UTF-8.
+/// Line of output without control characters. '?' replaces each byte that is not UTF-8 and each
+/// character that controls a terminal: controls (C0, C1, U+007F), line and paragraph separators,
+/// and changes of text direction. Other characters stay, since file names are in UTF-8.
 [[nodiscard]] std::string printable_line(std::string_view text);
 
 } // namespace tactus

@@ -15,7 +15,7 @@ namespace
 
 LogStyle style_of_all;
 
-/// JSON string of a printable line, i.e. UTF-8 without control characters.
+/// JSON string of a line that passed printable_line().
 std::string json_text(std::string_view text)
 {
     std::string json = "\"";

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-// Any thread, except the haptic one: texts allocate, and stderr may wait.
+// Any thread except the haptic one: strings allocate, and a write to stderr may wait.
 namespace tactus
 {
 
@@ -17,7 +17,7 @@ namespace tactus
 enum class LogLevel : std::uint8_t
 {
     error,   ///< The program cannot do its task.
-    warning, ///< The program goes on, but something was lost, refused or is not as it should be.
+    warning, ///< The program continues, but data were lost or refused, or a setting is wrong.
     info,    ///< Normal operation.
 };
 inline constexpr std::size_t kLogLevels = 3;
@@ -35,9 +35,9 @@ struct LogStyle
 void set_log_style(const LogStyle& style) noexcept;
 [[nodiscard]] const LogStyle& log_style() noexcept;
 
-/// A line in a style, without its end. Text style: errors and warnings follow the program's name,
-/// info stands alone. JSON style: an object with the keys `time` (UTC), `level`, `program` and
-/// `text`. The text passes printable_line().
+/// Line of the log in a style, without newline. Text style: "PROGRAM: " precedes errors and
+/// warnings, but not info. JSON style: an object with the keys `time` (UTC), `level`, `program` and
+/// `text`. `text` passes printable_line().
 [[nodiscard]] std::string log_text(const LogStyle& style, LogLevel level, std::string_view program,
                                    std::string_view text,
                                    std::chrono::system_clock::time_point now);

@@ -13,8 +13,8 @@
 namespace tactus
 {
 
-/// Bytes of a regular file that has 1 to `most` of them. The refusal gives the fault without the
-/// file's name. The size is checked first, so a file that is too large is not read.
+/// Content of a regular file of 1 to `most` bytes. The refusal gives the fault without the path.
+/// The size is checked first, so a file that is too large is not read.
 [[nodiscard]] Result<std::string, Refusal>
 read_file(const std::filesystem::path& path,
           std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());

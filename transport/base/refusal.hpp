@@ -4,18 +4,17 @@
 
 #include <string>
 
-// Any thread, except the haptic one: texts allocate.
+// Any thread except the haptic one: strings allocate.
 namespace tactus
 {
 
-/// Reason of a refusal: one line for the user, without the program's name and without a line end. A
-/// real-time thread's refusal may have several lines, one for each right that was not granted.
+/// Reason of a refusal: one line for the user, without the program's name and newline. A refusal of
+/// real-time settings has one line for each right that was not granted.
 struct Refusal
 {
     std::string text;
-    /// True if an option asked for a setting that this machine lacks (RtThread) or that contradicts
-    /// another option. The program then leaves with the exit code of wrong usage, not with that of
-    /// a failure.
+    /// True if an option needs a setting that this machine lacks (RtThread) or contradicts another
+    /// option. The program's exit code is then kExitUsage, not kExitFailed.
     bool is_usage{false};
 };
 

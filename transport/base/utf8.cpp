@@ -14,8 +14,8 @@ namespace
 
 using Range = std::pair<std::string_view, std::string_view>;
 
-/// First and last characters of ranges without letters, all rare.
-constexpr std::array<Range, 20> kNoPoseSamples{{
+/// Ranges of characters, first and last, for which is_letter() is false.
+constexpr std::array<Range, 20> kNoLetters{{
     {"\u0080", "\u00A9"}, // Controls, blanks and signs of Latin-1, except for its three letters.
     {"\u00AB", "\u00B4"}, {"\u00B6", "\u00B9"},         {"\u00BB", "\u00BF"},
     {"\u034F", "\u034F"}, {"\u061C", "\u061C"},         {"\u115F", "\u1160"},
@@ -45,7 +45,7 @@ std::size_t character_bytes(std::string_view text) noexcept
                                                                : 0;
     for (std::size_t i = 1; i < count; ++i)
     {
-        // The second byte also excludes overlong forms and invalid characters.
+        // The limits of the second byte also exclude overlong forms and invalid characters.
         const unsigned least = i > 1 ? 0x80 : first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
         const unsigned most = i > 1 ? 0xBF : first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
         if (byte(i) < least || byte(i) > most)
@@ -61,7 +61,7 @@ std::string_view whole_characters(std::string_view text, std::size_t longest) no
     std::size_t end = std::min(longest, text.size());
     if (end < text.size())
     {
-        // A character that crosses the end begins at most three bytes before it.
+        // A character cut by the end begins at most three bytes before it.
         for (std::size_t begin = end - std::min<std::size_t>(end, 3); begin < end; ++begin)
         {
             if (character_bytes(text.substr(begin)) > end - begin)
@@ -78,8 +78,8 @@ bool is_letter(std::string_view character) noexcept
     const std::size_t bytes = character_bytes(character);
     return bytes > 1 && bytes == character.size() &&
            std::ranges::none_of(
-               kNoPoseSamples,
-               [character](const Range& range) { // Bytes of UTF-8 sort like the characters.
+               kNoLetters,
+               [character](const Range& range) { // UTF-8 sorts like the characters.
                    return character >= range.first && character <= range.second;
                });
 }

@@ -16,7 +16,7 @@ namespace tactus::dds
 namespace
 {
 
-/// Maximum number of other servers that are logged: many unknown ones must not fill the log.
+/// Maximum number of other servers that are logged, so that many unknown ones do not fill the log.
 constexpr std::size_t kMaxNamed = 16;
 
 } // namespace
@@ -40,18 +40,18 @@ Authority::Authority(Catalogue& catalogue, const ModelSelector& name, bool is_sc
     TACTUS_ASSERT(is_scene || name.hash);
 }
 
-void Authority::pin(std::uint64_t host_epoch)
+void Authority::pin(std::uint64_t server_epoch)
 {
-    host_epoch_ = host_epoch;
+    server_epoch_ = server_epoch;
     is_resident_ = true;
-    const std::vector<const Catalogue::Offer*> offers = catalogue_.offers_of(host_epoch);
+    const std::vector<const Catalogue::Offer*> offers = catalogue_.offers_of(server_epoch);
     if (!offers.empty())
     {
-        host_ = offers.front()->host;
-        host_name_ = catalogue_.participants().name_of(host_);
+        server_ = offers.front()->server;
+        server_name_ = catalogue_.participants().name_of(server_);
     }
-    catalogue_.keep(host_epoch);
-    tell(ServerNews::pinned, host_name_, "");
+    catalogue_.keep(server_epoch);
+    tell(ServerNews::pinned, server_name_, "");
 }
 
 void Authority::step()
@@ -65,21 +65,23 @@ void Authority::step()
     const bool was_here = std::exchange(
         is_resident_,
         std::ranges::any_of(offers, [this](const Catalogue::Offer* offer)
-                            { return offer->host_epoch == host_epoch_ && has_hash(*offer); }));
+                            { return offer->server_epoch == server_epoch_ && has_hash(*offer); }));
     if (was_here && !is_resident_)
     {
         named_.clear();
-        tell(ServerNews::lost, host_name_,
-             is_scene_ ? fmt::format("the server of {}, {}, is gone; its objects stay where they "
-                                     "are and are stale",
-                                     what_, host_name_)
+        tell(ServerNews::lost, server_name_,
+             is_scene_ ? fmt::format("the server of {}, {}, disconnected; its objects keep their "
+                                     "poses and are stale",
+                                     what_, server_name_)
                        : "");
     }
     if (!was_here && is_resident_)
     {
         named_.clear();
-        tell(ServerNews::back, host_name_,
-             is_scene_ ? fmt::format("the server of {}, {}, is back", what_, host_name_) : "");
+        tell(ServerNews::back, server_name_,
+             is_scene_
+                 ? fmt::format("the server of {}, {}, is connected again", what_, server_name_)
+                 : "");
     }
     if (!is_resident_)
     {
@@ -91,7 +93,7 @@ void Authority::step()
     }
 }
 
-/// Offers of the name, of a model with any hash.
+/// Offers of the scene or model by its name; those of a model with any hash.
 std::vector<const Catalogue::Offer*> Authority::candidates() const
 {
     return is_scene_ ? catalogue_.servers_of_scene({name_.name})
@@ -106,13 +108,13 @@ bool Authority::has_hash(const Catalogue::Offer& offer) const
 bool Authority::may_follow(const Catalogue::Offer& offer) const
 {
     const Participants& participants = catalogue_.participants();
-    const std::string certificate = participants.certificate_of(host_);
+    const std::string certificate = participants.certificate_of(server_);
     const bool is_same_party =
-        !certificate.empty() && participants.certificate_of(offer.host) == certificate;
+        !certificate.empty() && participants.certificate_of(offer.server) == certificate;
     return has_hash(offer) &&
            (is_same_party || failover_.any ||
             std::ranges::any_of(failover_.servers, [&](const std::string& server)
-                                { return participants.is_called(offer.host, server); }));
+                                { return participants.is_called(offer.server, server); }));
 }
 
 void Authority::look_for_another(const std::vector<const Catalogue::Offer*>& offers)
@@ -122,32 +124,31 @@ void Authority::look_for_another(const std::vector<const Catalogue::Offer*>& off
     if (next != offers.end())
     {
         const Catalogue::Offer& offer = **next;
-        host_epoch_ = offer.host_epoch;
-        host_ = offer.host;
+        server_epoch_ = offer.server_epoch;
+        server_ = offer.server;
         is_resident_ = true;
         named_.clear();
-        catalogue_.keep(host_epoch_);
+        catalogue_.keep(server_epoch_);
         const std::string last =
-            std::exchange(host_name_, catalogue_.participants().name_of(host_));
-        tell(ServerNews::replaced, host_name_,
-             fmt::format("{} is followed as {} says from now on, in the place of {}", what_,
-                         host_name_, last));
+            std::exchange(server_name_, catalogue_.participants().name_of(server_));
+        tell(ServerNews::replaced, server_name_,
+             fmt::format("{} now follows {} instead of {}", what_, server_name_, last));
         return;
     }
     for (const Catalogue::Offer* offer : offers)
     {
-        if (named_.size() < kMaxNamed && named_.insert(offer->host).second)
+        if (named_.size() < kMaxNamed && named_.insert(offer->server).second)
         {
-            const std::string name = catalogue_.participants().name_of(offer->host);
-            const char* form =
-                is_scene_ ? "{} is offered by {} now, which isn't followed: it isn't {}, "
-                            "and --failover doesn't allow it"
-                          : "{} is offered by {} now: its pieces are used, what it says of "
-                            "objects isn't, since it isn't {} and --failover doesn't "
-                            "allow it";
-            // The model's link logs a changed hash.
+            const std::string name = catalogue_.participants().name_of(offer->server);
+            const char* form = is_scene_
+                                   ? "{} is now offered by {}, which isn't followed: the server "
+                                     "was {}, and --failover allows no other"
+                                   : "{} is now offered by {}: its pieces are used, but not its "
+                                     "objects: the server was {}, and --failover allows no other";
+            // DdsLink logs a changed hash.
             tell(ServerNews::not_followed, name,
-                 has_hash(*offer) ? fmt::format(fmt::runtime(form), what_, name, host_name_) : "");
+                 has_hash(*offer) ? fmt::format(fmt::runtime(form), what_, name, server_name_)
+                                  : "");
         }
     }
 }
@@ -156,17 +157,17 @@ void Authority::name_others(const std::vector<const Catalogue::Offer*>& offers)
 {
     for (const Catalogue::Offer* offer : offers)
     {
-        if (offer->host_epoch != host_epoch_ && named_.size() < kMaxNamed &&
-            named_.insert(offer->host).second)
+        if (offer->server_epoch != server_epoch_ && named_.size() < kMaxNamed &&
+            named_.insert(offer->server).second)
         {
-            const std::string name = catalogue_.participants().name_of(offer->host);
+            const std::string name = catalogue_.participants().name_of(offer->server);
             tell(ServerNews::namesake, name,
-                 fmt::format("warning: {} is offered by a second server, {}{}; {} is followed, "
-                             "{}@SERVER chooses",
+                 fmt::format("warning: {} is offered by a second server, {}{}; {} is followed; "
+                             "choose a server with {}@SERVER",
                              what_, name,
                              has_hash(*offer) ? ""
                                               : ", with another hash, " + hash_text(offer->hash),
-                             host_name_, name_.name));
+                             server_name_, name_.name));
         }
     }
 }

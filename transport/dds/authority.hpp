@@ -16,13 +16,13 @@
 namespace tactus::dds
 {
 
-/// Change of the server of a name.
+/// Kinds of events about the server that has authority over a name (Authority).
 enum class ServerNews : std::uint8_t
 {
-    pinned,   ///< The server is chosen; its statements count from now on.
-    lost,     ///< The server is gone.
-    back,     ///< The same server is back.
-    replaced, ///< Another server's statements count from now on.
+    pinned,   ///< The first server was chosen; its objects count from now on.
+    lost,     ///< The chosen server is gone.
+    back,     ///< The chosen server is present again.
+    replaced, ///< Another server was chosen in place of one that is gone.
     /// Another server offers the name while the chosen one is gone, and may not replace it.
     not_followed,
     namesake, ///< Another server offers the name while the chosen one is present.
@@ -36,33 +36,33 @@ struct ServerEvent
     std::chrono::steady_clock::time_point time{};
     ServerNews news{ServerNews::pinned};
     std::string what;   ///< "scene 'NAME'" or "model 'NAME'".
-    std::string server; ///< Program of the server, with its process and machine.
+    std::string server; ///< Name of the server's program, with its process and machine.
 };
 
-/// The server with authority over one name: the hash of the name, the list of objects, their poses
-/// and materials. Pieces need no authority: their hashes prove them.
+/// Chooses the one server that decides over a name: the hash of the model, the objects, their poses
+/// and materials. Pieces may come from any server, since their hashes prove them.
 ///
-/// The first server that answers has it and keeps it; it is identified by its DDS participant. If
-/// it is gone, a server with the same certificate (DDS Security) or one that Failover allows takes
-/// over. If there is none, the last state stays and becomes stale. Every change is logged and
-/// recorded as an event. One thread, that of the catalogue.
+/// The first server that answers is chosen; its DDS participant identifies it. If it is gone, a
+/// server with the same certificate (DDS Security) or one that Failover allows replaces it. Without
+/// such a server the last state stays and becomes stale. Each change is logged and recorded as an
+/// event. One thread, that of the catalogue.
 class Authority
 {
 public:
-    /// `name` is that of a scene, or of a model and then has its hash (asserted). The catalogue
+    /// `name` is the name of a scene, or the name and hash (asserted) of a model. The catalogue
     /// must outlive the authority.
     Authority(Catalogue& catalogue, const ModelSelector& name, bool is_scene, Failover failover,
               Log log);
 
-    /// Chooses the server that answered first. Call it once.
-    void pin(std::uint64_t host_epoch);
+    /// Chooses the first server. Call it once, before step().
+    void pin(std::uint64_t server_epoch);
 
-    /// Epoch of the server with authority, present or not.
-    [[nodiscard]] std::uint64_t host() const noexcept { return host_epoch_; }
-    /// True if that server is present.
+    /// Epoch of the chosen server, present or not.
+    [[nodiscard]] std::uint64_t server() const noexcept { return server_epoch_; }
+    /// True if the chosen server is present.
     [[nodiscard]] bool is_resident() const noexcept { return is_resident_; }
 
-    /// Updates the state from the catalogue. Cheap if that has not changed.
+    /// Updates the choice from the catalogue. Cheap if the catalogue has not changed.
     void step();
 
     /// Events, oldest first; those after the first kMaxEvents are not recorded.
@@ -83,10 +83,10 @@ private:
     std::string what_;
     Failover failover_;
     RateLimitedLog log_;
-    std::uint64_t host_epoch_{0};
-    ParticipantId host_{};
-    /// Name of that server, stored because it cannot be looked up once the server is gone.
-    std::string host_name_;
+    std::uint64_t server_epoch_{0};
+    ParticipantId server_{};
+    /// Name of the chosen server, stored since DDS does not know it once the server is gone.
+    std::string server_name_;
     bool is_resident_{false};
     std::uint64_t seen_catalogue_{0};
     std::set<ParticipantId> named_; ///< Other servers that were logged since the last change.

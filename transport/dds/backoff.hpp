@@ -8,9 +8,8 @@
 namespace tactus::dds
 {
 
-/// Rate limit for an action that another program on the domain can trigger and that costs a little
-/// each time: immediate at first, then after a second, then after twice the wait each time, up to a
-/// minute.
+/// Rate limit for an action with a cost that other programs on the domain can trigger. The first
+/// action is immediate, the next one a second later; each further wait doubles, up to a minute.
 class Backoff
 {
 public:

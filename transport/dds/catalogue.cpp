@@ -18,10 +18,11 @@ namespace tactus::dds
 namespace
 {
 
-/// Samples taken in one refresh; the rest waits in the reader for the next one.
+/// Maximum number of samples taken in one refresh(); further ones wait in the reader.
 constexpr std::size_t kEntriesPerRefresh = 4'096;
-/// Servers whose offers are all kept; beyond that one that is gone is dropped.
-constexpr std::size_t kMaxKeptHosts = 64;
+/// Maximum number of servers that keep() protects. A further one replaces one that is gone, or else
+/// any.
+constexpr std::size_t kMaxKeptServers = 64;
 constexpr std::size_t kMaxNamesShown = 20;
 
 ContentHash hash_from(const std::uint8_t (&bytes)[16]) // NOLINT: idlc's type.
@@ -33,9 +34,9 @@ ContentHash hash_from(const std::uint8_t (&bytes)[16]) // NOLINT: idlc's type.
 
 std::vector<const Catalogue::Offer*> first_of_each(std::vector<const Catalogue::Offer*> offers)
 {
-    std::set<std::uint64_t> hosts;
+    std::set<std::uint64_t> servers;
     std::erase_if(offers, [&](const Catalogue::Offer* offer)
-                  { return !hosts.insert(offer->host_epoch).second; });
+                  { return !servers.insert(offer->server_epoch).second; });
     return offers;
 }
 
@@ -88,27 +89,27 @@ void Catalogue::ask_for_scene(const std::string& name)
     }
 }
 
-void Catalogue::keep(std::uint64_t host_epoch)
+void Catalogue::keep(std::uint64_t server_epoch)
 {
-    if (!kept_hosts_.insert(host_epoch).second)
+    if (!kept_servers_.insert(server_epoch).second)
     {
         return;
     }
-    if (kept_hosts_.size() > kMaxKeptHosts)
+    if (kept_servers_.size() > kMaxKeptServers)
     {
-        const auto is_other = [&](std::uint64_t epoch) { return epoch != host_epoch; };
-        auto given_up = std::ranges::find_if(kept_hosts_, [&](std::uint64_t epoch)
-                                             { return is_other(epoch) && !has_host(epoch); });
-        if (given_up == kept_hosts_.end())
+        const auto is_other = [&](std::uint64_t epoch) { return epoch != server_epoch; };
+        auto given_up = std::ranges::find_if(kept_servers_, [&](std::uint64_t epoch)
+                                             { return is_other(epoch) && !has_server(epoch); });
+        if (given_up == kept_servers_.end())
         {
-            given_up = std::ranges::find_if(kept_hosts_, is_other);
+            given_up = std::ranges::find_if(kept_servers_, is_other);
         }
-        kept_hosts_.erase(given_up);
+        kept_servers_.erase(given_up);
     }
     count_again();
 }
 
-/// Recounts the shares after a change of the requested offers.
+/// Counts all shares again after a change of the requested offers.
 void Catalogue::count_again()
 {
     shares_.clear();
@@ -124,7 +125,7 @@ bool Catalogue::is_asked(const Offer& offer) const
 {
     return asked_names_.contains(offer.name) || asked_hashes_.contains(offer.hash) ||
            (!offer.scene.empty() && asked_scenes_.contains(offer.scene)) ||
-           kept_hosts_.contains(offer.host_epoch);
+           kept_servers_.contains(offer.server_epoch);
 }
 
 void Catalogue::refresh()
@@ -140,11 +141,11 @@ void Catalogue::refresh()
             { participants_->refuse(info.publication_handle, reason, entry.model); };
             if (tells_end(info))
             {
-                on_end(entry.model, entry.host_epoch, info.publication_handle);
+                on_end(entry.model, entry.server_epoch, info.publication_handle);
             }
             else if (is_valid_name(name) && (scene.empty() || is_valid_name(scene)))
             {
-                if (!try_add({name, scene, hash_from(entry.model_hash), entry.host_epoch,
+                if (!try_add({name, scene, hash_from(entry.model_hash), entry.server_epoch,
                               entry.model, entry.faces, entry.header_bytes, entry.base_bytes,
                               participants_->writer_of(info.publication_handle)
                                   .value_or(ParticipantId{}),
@@ -154,7 +155,7 @@ void Catalogue::refresh()
                 }
                 if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
                 {
-                    dispute(entry.model, entry.host_epoch);
+                    dispute(entry.model, entry.server_epoch);
                 }
             }
             else
@@ -165,33 +166,33 @@ void Catalogue::refresh()
     look_at_disputed();
 }
 
-/// Handles the end of an instance. A server that leaves takes its offers with it; a server that
-/// falls silent keeps them until its lease ends, since a flood on the receiving thread can silence
-/// others. Any program can dispose of an instance, bypassing the filter: that proves nothing, but
-/// DDS's further reports on the instance are then unreliable too.
-void Catalogue::on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint64_t writer)
+/// Handles the end of an offer in DDS. If its server left, the offer is removed. A server that is
+/// only silent keeps it until the lease ends, since a flood of packets can silence servers. Any
+/// program can end an instance past the filter; DDS's later reports on it are then unreliable, so
+/// the offer becomes disputed and is checked.
+void Catalogue::on_end(std::uint32_t model, std::uint64_t server_epoch, std::uint64_t writer)
 {
-    if (!participants_->is_host(writer, host_epoch))
+    if (!participants_->is_server(writer, server_epoch))
     {
         participants_->refuse(writer, Refused::identity);
     }
     else if (!participants_->is_writing(writer))
     {
-        remove({host_epoch, model});
+        remove({server_epoch, model});
         return;
     }
-    dispute(model, host_epoch);
+    dispute(model, server_epoch);
 }
 
-void Catalogue::dispute(std::uint32_t model, std::uint64_t host_epoch)
+void Catalogue::dispute(std::uint32_t model, std::uint64_t server_epoch)
 {
-    if (const auto offer = offers_.find({host_epoch, model}); offer != offers_.end())
+    if (const auto offer = offers_.find({server_epoch, model}); offer != offers_.end())
     {
         offer->second.is_disputed = true;
     }
 }
 
-/// Disputed offers end with the writer or the participant of their server.
+/// Removes each disputed offer whose server, or its writer, is gone. Checks every 50 ms.
 void Catalogue::look_at_disputed()
 {
     constexpr auto kEvery = std::chrono::milliseconds(50);
@@ -205,7 +206,7 @@ void Catalogue::look_at_disputed()
     for (const auto& [key, offer] : offers_)
     {
         if (offer.is_disputed &&
-            !(participants_->is_writing(offer.writer) && participants_->is_resident(offer.host)))
+            !(participants_->is_writing(offer.writer) && participants_->is_resident(offer.server)))
         {
             gone.push_back(key);
         }
@@ -219,9 +220,9 @@ std::vector<const Catalogue::Offer*> Catalogue::select(const ModelSelector& sele
     std::map<std::uint64_t, bool> called; // Result by server, to query each one once.
     const auto is_called = [&](const Offer& offer)
     {
-        const auto [known, is_new] = called.try_emplace(offer.host_epoch, false);
+        const auto [known, is_new] = called.try_emplace(offer.server_epoch, false);
         known->second =
-            is_new ? participants_->is_called(offer.host, selector.server) : known->second;
+            is_new ? participants_->is_called(offer.server, selector.server) : known->second;
         return known->second;
     };
     std::vector<const Offer*> found;
@@ -261,10 +262,10 @@ const Catalogue::Offer* Catalogue::find(const ModelSelector& selector) const
     return found.empty() ? nullptr : found.front();
 }
 
-const Catalogue::Offer* Catalogue::find(const ContentHash& hash, std::uint64_t host_epoch) const
+const Catalogue::Offer* Catalogue::find(const ContentHash& hash, std::uint64_t server_epoch) const
 {
-    for (auto at = offers_.lower_bound({host_epoch, 0});
-         at != offers_.end() && at->first.first == host_epoch; ++at)
+    for (auto at = offers_.lower_bound({server_epoch, 0});
+         at != offers_.end() && at->first.first == server_epoch; ++at)
     {
         if (at->second.hash == hash)
         {
@@ -274,17 +275,17 @@ const Catalogue::Offer* Catalogue::find(const ContentHash& hash, std::uint64_t h
     return nullptr;
 }
 
-bool Catalogue::has_host(std::uint64_t host_epoch) const
+bool Catalogue::has_server(std::uint64_t server_epoch) const
 {
-    const auto at = offers_.lower_bound({host_epoch, 0});
-    return at != offers_.end() && at->first.first == host_epoch;
+    const auto at = offers_.lower_bound({server_epoch, 0});
+    return at != offers_.end() && at->first.first == server_epoch;
 }
 
-std::vector<const Catalogue::Offer*> Catalogue::offers_of(std::uint64_t host_epoch) const
+std::vector<const Catalogue::Offer*> Catalogue::offers_of(std::uint64_t server_epoch) const
 {
     std::vector<const Offer*> found;
-    for (auto at = offers_.lower_bound({host_epoch, 0});
-         at != offers_.end() && at->first.first == host_epoch; ++at)
+    for (auto at = offers_.lower_bound({server_epoch, 0});
+         at != offers_.end() && at->first.first == server_epoch; ++at)
     {
         found.push_back(&at->second);
     }
@@ -315,10 +316,10 @@ std::string Catalogue::scene_names() const
     return list_of(names);
 }
 
-/// False if there is no room.
+/// Stores an offer, or updates a known one; false if there is no room.
 bool Catalogue::try_add(Offer offer)
 {
-    const Key key{offer.host_epoch, offer.model};
+    const Key key{offer.server_epoch, offer.model};
     const auto known = offers_.find(key);
     if (known != offers_.end() && known->second.name == offer.name &&
         known->second.hash == offer.hash && known->second.scene == offer.scene)
@@ -327,11 +328,11 @@ bool Catalogue::try_add(Offer offer)
     }
     remove(key);
     const bool asked = is_asked(offer);
-    if (offers_.size() >= room_ && !try_make_room(offer.host_epoch, asked))
+    if (offers_.size() >= room_ && !try_make_room(offer.server_epoch, asked))
     {
         return false;
     }
-    Share& share = shares_[offer.host_epoch];
+    Share& share = shares_[offer.server_epoch];
     ++(asked ? share.asked : share.others);
     offer.arrival = ++arrivals_;
     offers_.emplace(key, std::move(offer));
@@ -339,23 +340,24 @@ bool Catalogue::try_add(Offer offer)
     return true;
 }
 
-/// Drops an offer that was not requested before one that was, from the server with the most of
-/// them.
-bool Catalogue::try_make_room(std::uint64_t host_epoch, bool for_asked)
+/// Removes one stored offer for a new one of `server_epoch`; false if none may be removed. A
+/// requested offer displaces one that was not requested first.
+bool Catalogue::try_make_room(std::uint64_t server_epoch, bool for_asked)
 {
-    const auto share = shares_.find(host_epoch);
+    const auto share = shares_.find(server_epoch);
     const Share own = share == shares_.end() ? Share{} : share->second;
     return for_asked ? try_take_from_largest(false, 0) || try_take_from_largest(true, own.asked + 1)
-                     // The margin of 1 keeps two equal servers from displacing each other.
+                     // The margin of 1 keeps two servers with equal shares from displacing each
+                     // other.
                      : try_take_from_largest(false, own.others + 1);
 }
 
-/// Drops the last offer of the server that has the most, if that is more than `more_than`; false if
-/// there is none.
+/// Removes the last offer of the server with the most offers of this kind (`asked`: requested
+/// ones). False if no server has more than `more_than`.
 bool Catalogue::try_take_from_largest(bool asked, std::size_t more_than)
 {
     const auto count = [&](const auto& entry)
-    { return kept_hosts_.contains(entry.first) ? 0 : entry.second.of(asked); };
+    { return kept_servers_.contains(entry.first) ? 0 : entry.second.of(asked); };
     const auto largest = std::ranges::max_element(shares_, {}, count);
     if (largest == shares_.end() || count(*largest) <= more_than)
     {

@@ -20,50 +20,52 @@
 namespace tactus::dds
 {
 
-/// The models published on the domain at present, as a controller sees them. One thread, that of
-/// the client; no call waits. Pointers to offers are valid until the next refresh().
+/// The models published on the domain at present, as a controller receives them. One thread, that
+/// of the client; no call waits. Pointers to offers are valid until the next refresh().
 ///
-/// Requested offers have priority over others. If there is no room for one more, the participant
-/// with the most offers loses its last one; unknown participants thus cannot keep a server out. An
-/// offer that was left out is announced again within a second.
+/// If all room is taken, a requested offer (ask_for(), keep()) displaces one that was not
+/// requested. Otherwise an offer displaces one of the same kind of a server with at least two more.
+/// Unknown participants thus cannot keep a server out. An omitted offer is announced again within a
+/// second.
 class Catalogue
 {
 public:
     struct Offer
     {
         std::string name;
-        std::string scene; ///< Scene that consists of the server's objects; may be empty.
+        std::string scene; ///< Scene that consists of all objects of the server; empty: none.
         ContentHash hash{};
-        std::uint64_t host_epoch{0};
+        std::uint64_t server_epoch{0};
         std::uint32_t model{0}; ///< Number of the model on that server.
         std::uint32_t faces{0};
         std::uint32_t header_bytes{0};
         std::uint32_t base_bytes{0};
-        ParticipantId host{};
+        ParticipantId server{};
         std::uint64_t writer{0}; ///< Handle of the server's writer.
-        /// True if a program, perhaps another one than the server, ended the offer.
+        /// True if any program ended the offer in DDS; refresh() checks whether its server is gone.
         bool is_disputed{false};
-        std::uint64_t arrival{0}; ///< Order of discovery, ascending.
+        std::uint64_t arrival{0}; ///< Number in the order of discovery, from 1.
     };
     static constexpr std::size_t kMaxOffers = 16'384;
 
-    /// `domain` must outlive the catalogue. `room` is the number of offers of all participants;
-    /// above 0.
+    /// `domain` must outlive the catalogue. `room` is the maximum number of stored offers, of all
+    /// servers together; above 0.
     [[nodiscard]] static Result<Catalogue, Refusal> create(const Domain& domain, Log log,
                                                            std::size_t room = kMaxOffers);
 
-    /// Gives offers that match priority from now on. Call it before the first refresh(); an offer
-    /// left out earlier returns within a second.
+    /// Requests offers that match the selector: they have priority from now on. Call it before the
+    /// first refresh(); an offer omitted earlier returns within a second.
     void ask_for(const ModelSelector& model);
     void ask_for_scene(const std::string& name);
-    /// Keeps all offers of this server.
-    void keep(std::uint64_t host_epoch);
+    /// Requests all offers of this server, and never displaces them.
+    void keep(std::uint64_t server_epoch);
 
-    /// Processes DDS events: new offers, servers that left or fell silent, programs with another
-    /// version of the protocol. Logs refusals. Cheap without events.
+    /// Processes DDS events: new offers, servers that are gone, programs with another version of
+    /// the protocol. Logs refusals. Cheap without events.
     void refresh();
 
-    /// Counter that changes with the requested offers; with all offers if none were requested.
+    /// Number that changes with the requested offers; with all offers if no name, hash or scene was
+    /// requested.
     [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
 
     /// Offers that match the selector, in order of discovery. Empty fields of the selector match
@@ -73,18 +75,18 @@ public:
     [[nodiscard]] std::vector<const Offer*> servers_of(const ModelSelector& selector) const;
     /// The first matching offer; null if there is none.
     [[nodiscard]] const Offer* find(const ModelSelector& selector) const;
-    /// The offer of a model by one run of one server; null if it is gone.
-    [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t host_epoch) const;
+    /// The offer of a model by the server with this epoch; null if it is gone.
+    [[nodiscard]] const Offer* find(const ContentHash& hash, std::uint64_t server_epoch) const;
 
-    /// The first matching offer of each server, where the selector's name is that of a scene.
+    /// The first offer of each server that matches, with selector.name as the name of a scene.
     [[nodiscard]] std::vector<const Offer*> servers_of_scene(const ModelSelector& selector) const;
-    /// The offers of a server, in the order of their numbers.
-    [[nodiscard]] std::vector<const Offer*> offers_of(std::uint64_t host_epoch) const;
+    /// The offers of a server, ascending by the number of the model.
+    [[nodiscard]] std::vector<const Offer*> offers_of(std::uint64_t server_epoch) const;
 
-    /// True if that run of a server is present.
-    [[nodiscard]] bool has_host(std::uint64_t host_epoch) const;
+    /// True if the server with this epoch is present.
+    [[nodiscard]] bool has_server(std::uint64_t server_epoch) const;
 
-    /// Names of the offered models for a message, "none" if empty; a long list is cut.
+    /// Names of the offered models for a message; "none" without models; a long list is cut.
     [[nodiscard]] std::string names() const;
     /// Names of the offered scenes, in the same form.
     [[nodiscard]] std::string scene_names() const;
@@ -92,9 +94,9 @@ public:
     [[nodiscard]] const Participants& participants() const noexcept { return *participants_; }
 
 private:
-    /// Epoch of a server and number of a model.
+    /// Epoch of the server and number of the model on it.
     using Key = std::pair<std::uint64_t, std::uint32_t>;
-    /// Number of stored offers of one server, requested ones and others.
+    /// Numbers of stored offers of one server: requested offers and others.
     struct Share
     {
         std::size_t asked{0};
@@ -112,12 +114,12 @@ private:
                                                    bool by_scene) const;
     [[nodiscard]] bool is_asked(const Offer& offer) const;
     [[nodiscard]] bool try_add(Offer offer);
-    [[nodiscard]] bool try_make_room(std::uint64_t host_epoch, bool for_asked);
+    [[nodiscard]] bool try_make_room(std::uint64_t server_epoch, bool for_asked);
     [[nodiscard]] bool try_take_from_largest(bool asked, std::size_t more_than);
     void count_again();
     void remove(const Key& key);
-    void on_end(std::uint32_t model, std::uint64_t host_epoch, std::uint64_t writer);
-    void dispute(std::uint32_t model, std::uint64_t host_epoch);
+    void on_end(std::uint32_t model, std::uint64_t server_epoch, std::uint64_t writer);
+    void dispute(std::uint32_t model, std::uint64_t server_epoch);
     void look_at_disputed();
 
     Participants* participants_;
@@ -125,11 +127,11 @@ private:
     RateLimitedLog log_;
     std::size_t room_;
     std::map<Key, Offer> offers_;
-    std::map<std::uint64_t, Share> shares_; ///< Shares by server.
+    std::map<std::uint64_t, Share> shares_; ///< Shares by epoch of the server.
     std::set<std::string> asked_names_;
     std::set<ContentHash> asked_hashes_;
     std::set<std::string> asked_scenes_;
-    std::set<std::uint64_t> kept_hosts_;
+    std::set<std::uint64_t> kept_servers_;
     std::uint64_t arrivals_{0};
     std::uint64_t version_{0};
     std::chrono::steady_clock::time_point looked_{}; ///< Time of the last check of disputed offers.

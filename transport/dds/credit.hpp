@@ -8,26 +8,25 @@
 namespace tactus::dds
 {
 
-/// The controller's side of the credit for one server's epoch.
+/// Controller's side of the flow control of pieces from one server (one epoch).
 ///
-/// The server counts the pieces it has `sent` and includes the count in each sample; it may send
-/// until the count reaches `granted`. The controller grants a window beyond the count that it has
-/// `seen`. All numbers are absolute, so a lost sample leaks no credit: the next one that arrives
-/// shows the whole count. Only the loss of a whole window stops the flow; then the window is
-/// written off.
+/// The server sends in each sample the number of pieces `sent` so far, and stops at `granted`. The
+/// controller grants a window beyond `seen`, the largest number it received. All numbers are
+/// totals, so the next sample repairs the loss of one. Only the loss of a whole window stops the
+/// flow; then write_off() treats it as seen.
 class CreditWindow
 {
 public:
     explicit CreditWindow(std::uint64_t window) noexcept : window_(window) {}
 
-    /// Records a sample with this count and `pieces` pieces.
+    /// Records a sample that states the total `sent` and holds `pieces` pieces.
     void on_sample(std::uint64_t sent, std::uint64_t pieces) noexcept
     {
         seen_ = std::max(seen_, sent);
         received_ += pieces;
     }
 
-    /// Treats everything granted as lost, after a long silence.
+    /// Treats all granted pieces as lost; for use after a long silence.
     void write_off() noexcept { seen_ = granted(); }
 
     [[nodiscard]] std::uint64_t seen() const noexcept { return seen_; }

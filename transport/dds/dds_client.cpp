@@ -18,9 +18,9 @@ namespace tactus::dds
 namespace
 {
 
-/// Pause between two polls.
+/// Pause between two rounds of find_headers().
 constexpr auto kPause = std::chrono::milliseconds(1);
-/// Time after which a missing model is logged.
+/// Wait after which missing models are logged.
 constexpr auto kQuiet = std::chrono::seconds(2);
 
 } // namespace
@@ -124,7 +124,7 @@ ServedModel DdsClient::served(HeaderSearch& search)
     ServedModel model;
     model.name = search.offer().name;
     model.hash = search.offer().hash;
-    model.host_epoch = search.offer().host_epoch;
+    model.server_epoch = search.offer().server_epoch;
     model.header = std::move(search.header());
     model.link =
         std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer(),
@@ -154,9 +154,9 @@ Refusal DdsClient::not_found(const HeaderSearch& search, bool is_published,
     const ModelSelector& selector = search.selector();
     if (is_published)
     {
-        return {fmt::format("model '{}' is published on domain {}, but its header did not come "
-                            "({})",
-                            selector.name, domain_.id(), waited)};
+        return {
+            fmt::format("model '{}' is published on domain {}, but its header did not arrive ({})",
+                        selector.name, domain_.id(), waited)};
     }
     const std::string pin = selector.hash             ? "@" + hash_text(*selector.hash)
                             : selector.server.empty() ? ""
@@ -168,7 +168,7 @@ Refusal DdsClient::not_found(const HeaderSearch& search, bool is_published,
                         selector.name, pin, domain_.id(), why ? ": " + *why : "", waited, names,
                         other != nullptr
                             ? fmt::format(", with hash {} by {}", hash_text(other->hash),
-                                          catalogue_.participants().name_of(other->host))
+                                          catalogue_.participants().name_of(other->server))
                             : "")};
 }
 

@@ -22,22 +22,22 @@
 namespace tactus::dds
 {
 
-/// A controller on a DDS domain: finds models and creates links to them. One thread, the transport
-/// thread, uses the client and its links.
+/// Connects a controller to a DDS domain: finds models and creates links to them. The client and
+/// its links belong to one thread, the transport thread.
 class DdsClient
 {
 public:
-    /// `controller_name` is shown by servers; a valid name (asserted). Join from an ordinary
-    /// thread, and after a server in the same process; see Domain, also for refusals.
+    /// Joins the domain, with the refusals of Domain::join(). Servers show `controller_name`, which
+    /// must be valid (asserted). Call it on an ordinary thread, and after a server of the same
+    /// process joined.
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
     create(std::uint32_t domain, std::string controller_name, Log log);
 
-    /// Waits until all these models are published and their headers have arrived, verified, each
-    /// from the first of its servers that answers. The results, in the order of the selectors, have
-    /// no base meshes: bring_bases() fetches them, or a ChunkLoader those of streamed models. Waits
-    /// at most `timeout`, or until `go_on` (called every few milliseconds) returns false. Refused
-    /// then, or after a second in which every server's header is damaged. The client must outlive
-    /// the models' links.
+    /// Waits until all these models are published and their verified headers have arrived, each
+    /// from the first of its servers that answers. Returns the models in the order of the
+    /// selectors, without base meshes (bring_bases()). Refused after `timeout`, if `go_on` (called
+    /// every few milliseconds) returns false, or if for a second every server of a model sends a
+    /// wrong header. The client must outlive the links.
     [[nodiscard]] Result<std::vector<ServedModel>, Refusal>
     find_headers(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
                  const std::function<bool()>& go_on = {});
@@ -48,7 +48,7 @@ public:
 
     [[nodiscard]] const Catalogue& catalogue() const noexcept { return catalogue_; }
     [[nodiscard]] Catalogue& catalogue() noexcept { return catalogue_; }
-    /// Exchange for a SceneReader. Polling a link steps it; without links call its step().
+    /// Exchange, for a SceneReader. Polling any link steps it; without links, call its step().
     [[nodiscard]] PieceExchange& exchange() noexcept { return *exchange_; }
     /// Domain for further topics of the same controller; lives as long as the client.
     [[nodiscard]] const Domain& domain() const noexcept { return domain_; }

@@ -16,13 +16,13 @@ namespace tactus::dds
 namespace
 {
 
-/// Interval of the check for missing pieces.
+/// Interval of ask_others().
 constexpr auto kLookEvery = std::chrono::milliseconds(20);
-/// Time after which a piece that is not requested again is no longer wanted.
+/// Time after the last request() for a piece after which the piece is no longer wanted.
 constexpr auto kForgotten = std::chrono::seconds(2);
-/// Time in which another server may appear after all present ones sent wrong bytes.
+/// Time after the first wrong bytes during which another server may appear.
 constexpr auto kAnotherAfter = std::chrono::seconds(1);
-/// Maximum number of remembered servers: wrong ones, replaced ones and senders.
+/// Maximum number of servers in each of `distrusted_`, `told_` and `senders_`.
 constexpr std::size_t kMaxRemembered = 256;
 
 } // namespace
@@ -32,7 +32,7 @@ DdsLink::DdsLink(PieceExchange& exchange, Catalogue& catalogue, const Catalogue:
     : exchange_(exchange), catalogue_(catalogue), offer_(offer), log_(std::move(log))
 {
     exchange.add(*this);
-    exchange.meet(offer.host_epoch);
+    exchange.meet(offer.server_epoch);
 }
 
 void DdsLink::request(std::span<const ContentKey> keys, std::uint32_t generation)
@@ -49,7 +49,7 @@ void DdsLink::request(std::span<const ContentKey> keys, std::uint32_t generation
         asked->second.last = now;
         asked->second.generation = generation;
     }
-    exchange_.ask(offer_.host_epoch, offer_.model, keys, generation);
+    exchange_.ask(offer_.server_epoch, offer_.model, keys, generation);
 }
 
 bool DdsLink::distrust(ContentKey key)
@@ -58,78 +58,78 @@ bool DdsLink::distrust(ContentKey key)
     distrusted_since_ = distrusted_.empty() ? now : distrusted_since_;
     if (key.kind == ContentKind::base)
     {
-        // If several servers sent parts, none is blamed: the next attempt takes all parts from one.
+        // If several servers sent parts, the wrong one is unknown and none is distrusted.
         if (base_from_.size() == 1)
         {
-            distrust_host(*base_from_.begin());
+            distrust_server(*base_from_.begin());
         }
         base_from_.clear();
         std::erase_if(asked_,
                       [](const auto& entry) { return entry.first.first == ContentKind::base; });
-        return is_trusted(offer_.host_epoch) || now - distrusted_since_ < kAnotherAfter;
+        return is_trusted(offer_.server_epoch) || now - distrusted_since_ < kAnotherAfter;
     }
-    distrust_host(handed_over_from_);
+    distrust_server(handed_over_from_);
     const auto at = asked_.find({key.kind, key.number});
     if (at != asked_.end() && at->second.has_come)
     {
         at->second = {now, at->second.last, now, at->second.generation};
-        if (is_trusted(offer_.host_epoch)) // Otherwise the next request asks again.
+        if (is_trusted(offer_.server_epoch)) // Otherwise the next request() does.
         {
-            exchange_.ask(offer_.host_epoch, offer_.model, {&key, 1}, at->second.generation);
+            exchange_.ask(offer_.server_epoch, offer_.model, {&key, 1}, at->second.generation);
         }
     }
     return true;
 }
 
-void DdsLink::distrust_host(std::uint64_t host)
+void DdsLink::distrust_server(std::uint64_t server)
 {
-    if (is_trusted(host) && distrusted_.size() < kMaxRemembered)
+    if (is_trusted(server) && distrusted_.size() < kMaxRemembered)
     {
-        distrusted_.push_back(host);
+        distrusted_.push_back(server);
     }
-    if (host == offer_.host_epoch)
+    if (server == offer_.server_epoch)
     {
-        const auto hosts = others();
-        const auto next = std::ranges::find_if(hosts, [this](const Catalogue::Offer* offer)
-                                               { return is_trusted(offer->host_epoch); });
-        if (next != hosts.end())
+        const auto servers = others();
+        const auto next = std::ranges::find_if(servers, [this](const Catalogue::Offer* offer)
+                                               { return is_trusted(offer->server_epoch); });
+        if (next != servers.end())
         {
             put_first(**next);
         }
     }
 }
 
-bool DdsLink::is_trusted(std::uint64_t host) const
+bool DdsLink::is_trusted(std::uint64_t server) const
 {
-    return std::ranges::find(distrusted_, host) == distrusted_.end();
+    return std::ranges::find(distrusted_, server) == distrusted_.end();
 }
 
-/// Other servers with the model, in rotation from the one after the last that was asked; only
-/// trusted ones if any server is trusted.
+/// Servers with the model except the first, starting after the last one asked. Distrusted servers
+/// are included only if all servers, the first too, are distrusted.
 std::vector<const Catalogue::Offer*> DdsLink::others() const
 {
-    auto hosts = catalogue_.servers_of({.name = "", .hash = offer_.hash});
-    std::erase_if(hosts, [this](const Catalogue::Offer* offer)
-                  { return offer->host_epoch == offer_.host_epoch; });
+    auto servers = catalogue_.servers_of({.name = "", .hash = offer_.hash});
+    std::erase_if(servers, [this](const Catalogue::Offer* offer)
+                  { return offer->server_epoch == offer_.server_epoch; });
     const auto trusts = [this](const Catalogue::Offer* offer)
-    { return is_trusted(offer->host_epoch); };
-    if (std::ranges::any_of(hosts, trusts) || is_trusted(offer_.host_epoch))
+    { return is_trusted(offer->server_epoch); };
+    if (std::ranges::any_of(servers, trusts) || is_trusted(offer_.server_epoch))
     {
-        std::erase_if(hosts, [&](const Catalogue::Offer* offer) { return !trusts(offer); });
+        std::erase_if(servers, [&](const Catalogue::Offer* offer) { return !trusts(offer); });
     }
-    const auto after = std::ranges::find_if(hosts, [this](const Catalogue::Offer* offer)
+    const auto after = std::ranges::find_if(servers, [this](const Catalogue::Offer* offer)
                                             { return offer->arrival > last_arrival_; });
-    std::rotate(hosts.begin(), after, hosts.end());
-    return hosts;
+    std::rotate(servers.begin(), after, servers.end());
+    return servers;
 }
 
-/// Number of a server; those beyond the limit share the last number.
-std::uint32_t DdsLink::number_of(std::uint64_t host)
+/// Index of a server in `senders_`; servers beyond kMaxRemembered share the last index.
+std::uint32_t DdsLink::number_of(std::uint64_t server)
 {
-    const auto at = std::ranges::find(senders_, host);
+    const auto at = std::ranges::find(senders_, server);
     if (at == senders_.end() && senders_.size() < kMaxRemembered)
     {
-        senders_.push_back(host);
+        senders_.push_back(server);
         return static_cast<std::uint32_t>(senders_.size() - 1);
     }
     return static_cast<std::uint32_t>(
@@ -138,7 +138,7 @@ std::uint32_t DdsLink::number_of(std::uint64_t host)
 
 void DdsLink::poll(PieceSink& sink)
 {
-    // No other link has stepped the exchange since the last poll.
+    // True if no other link has stepped the exchange since the last poll.
     if (exchange_.steps() == seen_steps_)
     {
         exchange_.step();
@@ -147,7 +147,7 @@ void DdsLink::poll(PieceSink& sink)
     if (catalogue_.version() != seen_catalogue_)
     {
         seen_catalogue_ = catalogue_.version();
-        follow_host();
+        follow_server();
     }
     if (state_ == LinkState::connected && Clock::now() - looked_ >= kLookEvery)
     {
@@ -168,7 +168,7 @@ void DdsLink::poll(PieceSink& sink)
     arrived_.clear();
 }
 
-/// Requests from other servers the pieces that have not arrived within kSilence.
+/// Requests the pieces that have not arrived within kSilence from other servers.
 void DdsLink::ask_others()
 {
     const auto now = Clock::now();
@@ -189,42 +189,42 @@ void DdsLink::ask_others()
     {
         return;
     }
-    auto hosts = others();
-    hosts.resize(std::min(hosts.size(), kHostsAtOnce));
-    for (const Catalogue::Offer* offer : hosts)
+    auto servers = others();
+    servers.resize(std::min(servers.size(), kServersAtOnce));
+    for (const Catalogue::Offer* offer : servers)
     {
-        exchange_.ask(offer->host_epoch, offer->model, keys, generation);
+        exchange_.ask(offer->server_epoch, offer->model, keys, generation);
         last_arrival_ = offer->arrival;
     }
 }
 
-/// Stores a piece until the next poll. Parts of a base mesh are verified together, so they are
-/// taken only from the server that is asked first.
-void DdsLink::receive(std::uint64_t host_epoch, ContentKey key, std::span<const std::byte> bytes)
+/// Stores a piece for the next poll(). Parts of a base mesh are verified together, so only those of
+/// the first server are stored.
+void DdsLink::receive(std::uint64_t server_epoch, ContentKey key, std::span<const std::byte> bytes)
 {
     if (key.kind == ContentKind::header)
     {
         return;
     }
     const auto at = asked_.find({key.kind, key.number});
-    if (host_epoch == offer_.host_epoch)
+    if (server_epoch == offer_.server_epoch)
     {
         first_heard_ = Clock::now();
     }
-    else if (at != asked_.end() && first_heard_ < at->second.first && is_trusted(host_epoch))
+    else if (at != asked_.end() && first_heard_ < at->second.first && is_trusted(server_epoch))
     {
-        if (const Catalogue::Offer* offer = catalogue_.find(offer_.hash, host_epoch))
+        if (const Catalogue::Offer* offer = catalogue_.find(offer_.hash, server_epoch))
         {
             put_first(*offer);
         }
     }
     if (key.kind == ContentKind::base)
     {
-        if (host_epoch != offer_.host_epoch)
+        if (server_epoch != offer_.server_epoch)
         {
             return;
         }
-        base_from_.insert(host_epoch);
+        base_from_.insert(server_epoch);
     }
     if (at != asked_.end())
     {
@@ -232,48 +232,48 @@ void DdsLink::receive(std::uint64_t host_epoch, ContentKey key, std::span<const 
     }
     append_piece(
         arrived_,
-        {offer_.hash, number_of(host_epoch), static_cast<std::uint32_t>(key.kind), key.number},
+        {offer_.hash, number_of(server_epoch), static_cast<std::uint32_t>(key.kind), key.number},
         bytes);
     bytes_received_ += kFrameBytes + bytes.size();
 }
 
-/// Replaces a server that does not answer or sent wrong bytes.
+/// Makes another server the first, and logs the reason.
 void DdsLink::put_first(const Catalogue::Offer& offer)
 {
-    if (told_.size() < kMaxRemembered && told_.insert(offer_.host_epoch).second)
+    if (told_.size() < kMaxRemembered && told_.insert(offer_.server_epoch).second)
     {
         const Participants& participants = catalogue_.participants();
         log_.write(
-            fmt::format("model '{}': {} {}; its pieces come from {} now", offer_.name,
-                        participants.name_of(offer_.host),
-                        is_trusted(offer_.host_epoch) ? "doesn't answer" : "sends what is wrong",
-                        participants.name_of(offer.host)));
+            fmt::format("model '{}': {} {}; pieces are now requested from {}", offer_.name,
+                        participants.name_of(offer_.server),
+                        is_trusted(offer_.server_epoch) ? "doesn't answer" : "sends wrong data",
+                        participants.name_of(offer.server)));
     }
     take_over(offer);
     first_heard_ = Clock::now();
 }
 
-/// Changes the server; the model keeps its name even if that server publishes another one.
+/// Changes the first server. The model keeps its name, even if the new server has another for it.
 void DdsLink::take_over(const Catalogue::Offer& offer)
 {
     const std::string name = offer_.name;
     offer_ = offer;
     offer_.name = name;
-    exchange_.meet(offer.host_epoch);
+    exchange_.meet(offer.server_epoch);
 }
 
-void DdsLink::follow_host()
+void DdsLink::follow_server()
 {
-    const Catalogue::Offer* same_host = catalogue_.find(offer_.hash, offer_.host_epoch);
+    const Catalogue::Offer* same_server = catalogue_.find(offer_.hash, offer_.server_epoch);
     const bool was_connected = state_ == LinkState::connected;
-    if (same_host != nullptr && was_connected)
+    if (same_server != nullptr && was_connected)
     {
         return;
     }
-    const Catalogue::Offer* offer = same_host;
-    if (const auto hosts = others(); same_host == nullptr && !hosts.empty())
+    const Catalogue::Offer* offer = same_server;
+    if (const auto servers = others(); same_server == nullptr && !servers.empty())
     {
-        offer = hosts.front();
+        offer = servers.front();
     }
     if (offer != nullptr)
     {
@@ -282,29 +282,30 @@ void DdsLink::follow_host()
     }
     if (was_connected)
     {
-        state_ = LinkState::host_gone;
-        log_.write(
-            fmt::format("host of model '{}' is gone; going on with what is resident", offer_.name));
+        state_ = LinkState::server_gone;
+        log_.write(fmt::format("server of model '{}' disconnected; the resident data stay in use",
+                               offer_.name));
     }
     const Catalogue::Offer* changed = catalogue_.find({offer_.name});
     if (changed != nullptr && changed->hash != refused_hash_)
     {
         refused_hash_ = changed->hash;
-        log_.write(fmt::format("model '{}' is now published with another hash, {}; what is "
-                               "resident is kept",
-                               offer_.name, hash_text(changed->hash)));
+        log_.write(fmt::format(
+            "model '{}' is now published with another hash, {}; the resident data are kept",
+            offer_.name, hash_text(changed->hash)));
     }
 }
 
 void DdsLink::adopt(const Catalogue::Offer& offer)
 {
-    const bool is_restarted = offer.host_epoch != offer_.host_epoch;
+    const bool is_restarted = offer.server_epoch != offer_.server_epoch;
     take_over(offer);
     state_ = LinkState::connected;
     ++session_;
     log_.write(fmt::format("model '{}' is served again{}", offer_.name,
-                           is_restarted ? ", by another host or a restarted one with the same file"
-                                        : " by the same host"));
+                           is_restarted
+                               ? ", by another server or a restarted one with the same file"
+                               : " by the same server"));
 }
 
 } // namespace tactus::dds

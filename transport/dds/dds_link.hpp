@@ -18,18 +18,19 @@
 namespace tactus::dds
 {
 
-/// One model's pieces from any server on the domain that has that model (that hash) at present. The
-/// hashes prove the pieces, so any server may send them.
+/// Link to one model, served by any server on the domain that has the model's hash. The hashes
+/// prove the pieces, so any of these servers may send them.
 ///
-/// A piece that does not arrive within kSilence is requested from other servers, kHostsAtOnce at a
-/// time. A server that answers in place of a silent one is asked first from then on; one that sent
-/// wrong bytes is not asked while there are others.
+/// Pieces are requested from one server, the first. If a piece does not arrive within kSilence, it
+/// is requested from other servers too, kServersAtOnce at a time. If one of them answers in place
+/// of a silent first server, it becomes the first. A server that sent wrong bytes is not asked
+/// while there are others.
 ///
-/// If all servers are gone, the link reports that and waits. If one with the same hash appears,
-/// under any epoch, it is adopted and counted as a new session: the same bytes need no reloading.
+/// If no server has the model, the link reports server_gone and waits. The next server with the
+/// hash, even under another epoch, begins a new session; resident data stay valid.
 ///
-/// Links of one exchange take turns in stepping it: pieces for one link that arrive while another
-/// is polled wait until its own next poll.
+/// Links share the exchange: poll() steps it unless another link has done so since the last poll().
+/// Pieces for a link wait until the link's own poll().
 class DdsLink final : public ChunkLink, private PieceReceiver
 {
 public:
@@ -49,49 +50,49 @@ private:
     /// A requested piece that has not arrived.
     struct Asked
     {
-        Clock::time_point first{}; ///< Time of the first request.
-        Clock::time_point last{};  ///< Time of the caller's last request.
-        /// Time of the last request to other servers, otherwise of the first one.
+        Clock::time_point first{}; ///< Time of the first request, or of the report of a wrong hash.
+        Clock::time_point last{};  ///< Time of the last request().
+        /// Start of the wait after which other servers are asked: `first` or the last such request.
         Clock::time_point since{};
         std::uint32_t generation{0};
-        bool has_come{false}; ///< True if the next poll delivers it.
+        bool has_come{false}; ///< True if the piece is in `arrived_`.
     };
     using PieceId = std::pair<ContentKind, std::uint32_t>;
 
     [[nodiscard]] const ContentHash& model() const override { return offer_.hash; }
-    void receive(std::uint64_t host_epoch, ContentKey key,
+    void receive(std::uint64_t server_epoch, ContentKey key,
                  std::span<const std::byte> bytes) override;
-    void follow_host();
+    void follow_server();
     void adopt(const Catalogue::Offer& offer);
     void ask_others();
     void put_first(const Catalogue::Offer& offer);
     void take_over(const Catalogue::Offer& offer);
-    void distrust_host(std::uint64_t host);
-    [[nodiscard]] bool is_trusted(std::uint64_t host) const;
+    void distrust_server(std::uint64_t server);
+    [[nodiscard]] bool is_trusted(std::uint64_t server) const;
     [[nodiscard]] std::vector<const Catalogue::Offer*> others() const;
-    [[nodiscard]] std::uint32_t number_of(std::uint64_t host);
+    [[nodiscard]] std::uint32_t number_of(std::uint64_t server);
 
     PieceExchange& exchange_;
     Catalogue& catalogue_;
-    Catalogue::Offer offer_; ///< Offer of the server that is asked first.
+    Catalogue::Offer offer_; ///< Offer of the first server.
     RateLimitedLog log_;
-    ContentHash refused_hash_{}; ///< Hash of the changed file that was last reported.
+    ContentHash refused_hash_{}; ///< Other hash under the model's name that was logged last.
     LinkState state_{LinkState::connected};
     std::uint64_t session_{1};
     std::uint64_t seen_catalogue_{0};
     std::uint64_t seen_steps_{0};
-    /// Framed pieces until the next poll; the sender's number is in the place of the revision.
+    /// Framed pieces for the next poll(); their revision field holds an index into `senders_`.
     std::vector<std::byte> arrived_;
-    std::vector<std::uint64_t> senders_; ///< Servers by that number.
-    std::uint64_t handed_over_from_{0};  ///< Server that sent the piece which a sink has.
+    std::vector<std::uint64_t> senders_; ///< Epochs of servers that sent pieces.
+    std::uint64_t handed_over_from_{0};  ///< Epoch of the sender of the piece delivered last.
     std::uint64_t bytes_received_{0};
     std::map<PieceId, Asked> asked_;
     std::set<std::uint64_t> base_from_;     ///< Servers that sent parts of the base mesh.
     std::vector<std::uint64_t> distrusted_; ///< Servers that sent wrong bytes.
-    std::set<std::uint64_t> told_;          ///< Servers whose replacement was logged.
-    Clock::time_point first_heard_{}; ///< Time when the server that is asked first was last heard.
+    std::set<std::uint64_t> told_;    ///< Servers that were replaced as the first, with a log line.
+    Clock::time_point first_heard_{}; ///< Time of the last piece from the first server.
     Clock::time_point looked_{};      ///< Time of the last check for missing pieces.
-    std::uint64_t last_arrival_{0};   ///< Arrival number of the other server that was asked last.
+    std::uint64_t last_arrival_{0};   ///< Catalogue::Offer::arrival of the last other server asked.
     Clock::time_point distrusted_since_{};
 };
 

@@ -11,19 +11,19 @@
 namespace tactus::dds
 {
 
-/// Deletes entities of Cyclone DDS on its own thread, which starts with the first one. Deleting a
-/// writer takes about 10 ms, in which a server's other controllers would receive nothing.
+/// Deletes entities of Cyclone DDS on a thread of its own, which starts with the first dispose().
+/// Deleting a writer takes about 10 ms, which would delay a server's other controllers.
 class Disposal
 {
 public:
     Disposal() = default;
-    /// Waits until all are deleted.
+    /// Waits until all entities are deleted.
     ~Disposal();
     Disposal(const Disposal&) = delete;
     Disposal& operator=(const Disposal&) = delete;
 
-    /// Deletes `owner` later; it must be the only owner. Null has no effect. Never waits; any
-    /// thread.
+    /// Queues `owner` for deletion; it must be the only owner. Null has no effect. Never waits for
+    /// the deletion; any thread.
     void dispose(std::shared_ptr<void> owner);
 
 private:

@@ -28,12 +28,11 @@ namespace tactus::dds
 namespace
 {
 
-/// Servers have well-known ports, ten on one machine, since Cyclone uses indices below the maximum
-/// here. Controllers use arbitrary ports and search the well-known ones. Controllers therefore do
-/// not discover each other; with 64 on one machine discovery took a minute. Servers search nowhere.
-/// A lost sample costs up to 100 ms: on loopback only overflow loses samples, and frequent
-/// heartbeats make many readers on few processors lose ever more. There is one receive thread, so
-/// that every thread's stack can be set by name.
+/// Default configuration; the fields are ParticipantIndex and a peer. Servers have the well-known
+/// ports of indices 0 to 9; controllers have arbitrary ports and search the well-known ones, so
+/// they do not discover each other: with 64 of them discovery took a minute. A lost sample may take
+/// 100 ms to repeat, since on loopback only overflow loses samples and frequent heartbeats add to
+/// it. One receive thread, so that every thread has a known name and thus a stack size.
 constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
 <General>
   <Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
@@ -57,18 +56,19 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
   <Thread name="gc"><StackSize>256 kB</StackSize></Thread>
 </Threads>
 </Domain></CycloneDDS>)";
-/// Peers: all ports of servers, or the discard port, since without peers Cyclone uses the first
-/// kind.
-constexpr const char* kLooksForHosts = "127.0.0.1";
+/// Peers: the ports of all servers on this machine, or the discard port for none. An empty list
+/// would mean the former.
+constexpr const char* kLooksForServers = "127.0.0.1";
 constexpr const char* kLooksNowhere = "127.0.0.1:9";
 
-/// Ports by the RTPS specification: the first one of domain 0, the distance between domains, and
-/// the number that ten servers use.
+/// UDP ports of discovery by the RTPS specification: the first port of domain 0, the ports of each
+/// domain, and those of its ten servers.
 constexpr std::uint32_t kFirstPort = 7'410;
 constexpr std::uint32_t kPortsOfDomain = 250;
-constexpr std::uint32_t kPortsOfHosts = 20;
+constexpr std::uint32_t kPortsOfServers = 20;
 
-/// Cyclone's messages of the whole process. A link that is down prints 100 lines a second.
+/// Log of Cyclone's messages, one for the process, at a limited rate: a link that is down causes
+/// 100 lines a second.
 class MessageSink
 {
 public:
@@ -109,11 +109,11 @@ private:
 struct ConfiguredDomain
 {
     std::weak_ptr<Entity> entity;
-    Party party{Party::host}; ///< Role that the configuration is for.
+    Party party{Party::server}; ///< Role with which the domain was created.
 };
 
-/// The domain in our configuration, shared by the process, since Cyclone allows one configuration
-/// for each domain id. Null if a server could not be found in it.
+/// Entity of the domain with the default configuration, shared by the process: Cyclone allows one
+/// configuration for each id. Null for a server if it was created for a controller.
 std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
 {
     static std::mutex mutex;
@@ -124,7 +124,7 @@ std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
     if (!domain)
     {
         const char* index = party == Party::controller ? "none" : "auto";
-        const char* peers = party == Party::host ? kLooksNowhere : kLooksForHosts;
+        const char* peers = party == Party::server ? kLooksNowhere : kLooksForServers;
         const std::string configuration = fmt::format(kConfiguration, index, peers);
         const auto fault = opened_on_loopback(
             [&]
@@ -154,8 +154,8 @@ Refusal join_error(std::uint32_t id, std::int32_t code)
     if (has_no_port && !is_configured)
     {
         const std::uint32_t first = kFirstPort + kPortsOfDomain * id;
-        more = fmt::format(" (others have its UDP ports {} to {}; 'ss -ulpn' names them)", first,
-                           first + kPortsOfHosts - 1);
+        more = fmt::format(" (other programs use its UDP ports {} to {}; 'ss -ulpn' lists them)",
+                           first, first + kPortsOfServers - 1);
     }
     return {fmt::format("DDS domain {} cannot be joined: {}{}", id,
                         reason.empty() ? dds_strretcode(code) : reason, more)};
@@ -178,7 +178,7 @@ Result<Domain, Refusal> Domain::join(std::uint32_t id, Party party)
         if (domain.configuration_ == nullptr)
         {
             return Refusal{fmt::format("DDS domain {} was joined by a controller of this process: "
-                                       "its host must join first, or nobody finds it",
+                                       "its server must join first, or no program finds it",
                                        id)};
         }
         if (!domain.configuration_->is_valid())
@@ -211,7 +211,7 @@ std::set<std::uint32_t> domains_in(std::string_view udp_sockets)
         std::uint32_t port = 0;
         std::from_chars(local.data() + digits, local.data() + local.size(), port, 16);
         const std::uint32_t above = port - std::min(port, kFirstPort);
-        if (port >= kFirstPort && above % kPortsOfDomain < kPortsOfHosts &&
+        if (port >= kFirstPort && above % kPortsOfDomain < kPortsOfServers &&
             above / kPortsOfDomain <= kMaxDomain)
         {
             domains.insert(above / kPortsOfDomain);
@@ -222,13 +222,13 @@ std::set<std::uint32_t> domains_in(std::string_view udp_sockets)
 
 std::optional<std::string> why_unheard(std::uint32_t domain)
 {
-    std::ifstream file("/proc/net/udp"); // Missing on other systems, where no domain is known.
+    std::ifstream file("/proc/net/udp"); // Missing outside of Linux: no domain is then found.
     std::set<std::uint32_t> domains =
         domains_in(std::string(std::istreambuf_iterator<char>(file), {}));
     domains.erase(domain);
     std::string text = has_configuration_of_user()
                            ? ""
-                           : "CYCLONEDDS_URI is not set, so only this machine is heard";
+                           : "CYCLONEDDS_URI is not set, so only this machine is reached";
     if (!domains.empty())
     {
         text += fmt::format("{}programs of this machine are on domain {}", text.empty() ? "" : "; ",

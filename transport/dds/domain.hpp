@@ -21,34 +21,35 @@ namespace tactus::dds
 /// Maximum domain id of the DDS port mapping.
 inline constexpr std::uint32_t kMaxDomain = 232;
 
-/// Role of a participant in discovery, in the configuration that Tactus sets.
+/// Role of a participant in discovery with the default configuration.
 enum class Party : std::uint8_t
 {
-    /// Is found by controllers and searches for none; also for programs that watch controllers.
-    host,
-    controller, ///< Finds servers. Controllers do not find each other.
-    both,       ///< Is found as a server, and finds servers.
+    /// Found by controllers; searches for no participant. Also for programs that watch controllers.
+    server,
+    controller, ///< Searches for servers. Controllers do not find each other.
+    both,       ///< Found like a server, and searches for servers.
 };
 
 /// One participant in one DDS domain.
 ///
-/// The configuration is always explicit: the user's CYCLONEDDS_URI if set, otherwise loopback,
-/// unicast, a lease of one second and small thread stacks (the process may lock its memory).
-/// Nothing is multicast or leaves the machine unless the user configures it.
+/// Without CYCLONEDDS_URI the default configuration applies: loopback, unicast, a lease of one
+/// second and small thread stacks, since the process may lock its memory. Multicast and other
+/// machines need a configuration by the user.
 ///
-/// Cyclone's threads inherit policy, priority and affinity of the thread that joins: join before a
-/// real-time thread exists, from an ordinary one. Cyclone's messages go to stderr at a limited
-/// rate.
+/// Cyclone's threads inherit policy, priority and affinity of the thread that calls join(). Call it
+/// on an ordinary thread before any real-time thread exists. Cyclone's messages go to stderr at a
+/// limited rate.
 class Domain
 {
 public:
-    /// `id` is 0 .. 232. Refused with Cyclone's own reason, e.g. for an unknown element in
-    /// CYCLONEDDS_URI or if no network interface fits. In the default configuration a machine has
-    /// room for ten processes with a server or watcher on a domain; further ones are refused. A
-    /// process that is both server and controller must join as a server first; the other order is
-    /// refused. Its controllers then find only its own servers; if it joined as `both`, and as long
-    /// as that domain lives, also those of other processes.
-    [[nodiscard]] static Result<Domain, Refusal> join(std::uint32_t id, Party party = Party::host);
+    /// Joins domain `id`, 0 to kMaxDomain. Refused with Cyclone's reason, for example an unknown
+    /// element in CYCLONEDDS_URI. The default configuration has room for ten processes with a
+    /// server or watcher on one machine and domain; further ones are refused. A process that is
+    /// server and controller must join as the server first (otherwise refused); its controllers
+    /// then find only its own servers. After Party::both they find those of other processes too, as
+    /// long as that domain lives.
+    [[nodiscard]] static Result<Domain, Refusal> join(std::uint32_t id,
+                                                      Party party = Party::server);
 
     [[nodiscard]] std::uint32_t id() const noexcept { return id_; }
     [[nodiscard]] std::int32_t participant() const noexcept { return participant_.get(); }
@@ -59,7 +60,8 @@ public:
 
 private:
     std::uint32_t id_{0};
-    /// Default configuration, shared by the process; outlives participants.
+    /// Default configuration, shared by all domains of this id in the process; outlives
+    /// participants.
     std::shared_ptr<Entity> configuration_;
     std::unique_ptr<Participants> participants_; ///< Used by all readers, which must end first.
     Entity participant_;
@@ -67,13 +69,12 @@ private:
     std::unique_ptr<Disposal> disposal_{std::make_unique<Disposal>()};
 };
 
-/// Likely causes, from this machine's state, why no server was heard on a domain: CYCLONEDDS_URI is
-/// not set, so only this machine is heard; and the other domains on which this machine's programs
-/// are. None if nothing is known. Reads /proc.
+/// Likely causes why no server was heard on a domain, in one text: CYCLONEDDS_URI is not set, or
+/// this machine's programs are on other domains. None if no cause is known. Reads /proc/net/udp.
 [[nodiscard]] std::optional<std::string> why_unheard(std::uint32_t domain);
 
-/// Domains that the ports in a text like /proc/net/udp belong to, ascending. Only ports of
-/// discoverable programs count.
+/// Domains that the UDP ports in a text like /proc/net/udp belong to, ascending. Only the ports of
+/// servers count.
 [[nodiscard]] std::set<std::uint32_t> domains_in(std::string_view udp_sockets);
 
 } // namespace tactus::dds

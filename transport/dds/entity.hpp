@@ -7,7 +7,7 @@
 namespace tactus::dds
 {
 
-/// Owns one entity of Cyclone DDS, and with it the entities created below that one.
+/// Owns one entity of Cyclone DDS and deletes it, with all entities created below it.
 class Entity
 {
 public:
@@ -19,7 +19,7 @@ public:
     Entity& operator=(const Entity&) = delete;
     ~Entity();
 
-    /// Handle of the C API; negative values are its error codes.
+    /// Handle of Cyclone's C API; a negative value is an error code.
     [[nodiscard]] std::int32_t get() const noexcept { return handle_; }
     [[nodiscard]] bool is_valid() const noexcept { return handle_ > 0; }
 
@@ -27,7 +27,7 @@ private:
     std::int32_t handle_{0};
 };
 
-/// A reader or writer below its own subscriber or publisher, which carries the partition.
+/// A reader or writer, and the subscriber or publisher of its own that defines its partition.
 struct Endpoint
 {
     Entity parent;

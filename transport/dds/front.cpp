@@ -30,7 +30,7 @@ constexpr std::array kBudgetOrder{&Budgets::splits,   &Budgets::merges,    &Budg
                                   &Budgets::nodes,    &Budgets::triangles, &Budgets::pages,
                                   &Budgets::requests, &Budgets::regions,   &Budgets::work};
 static_assert(std::size(tactus_v5_RefinementState{}.budgets) == kBudgetOrder.size());
-// `planes`, the budget of proxies, is not sent.
+// `planes`, the budget of proxies, is the only member that is not sent.
 static_assert(sizeof(Budgets) == (kBudgetOrder.size() + 1) * sizeof(std::uint32_t));
 static_assert(std::size(tactus_v5_RefinementState{}.times) == kFrontTimes);
 
@@ -71,7 +71,8 @@ std::optional<RefinementStateTool> tool_from(const tactus_v5_RefinementStateTool
 std::optional<RefinementStateObject> object_from(const tactus_v5_RefinementStateObject& wire,
                                                  std::uint32_t models)
 {
-    // A model may be farther from its frame's origin than an object may be moved.
+    // An object's frame may be farther away than kPoseReachMax_m, since the origin of its model is
+    // added.
     const Pose told = from_wire(wire.pose);
     const auto pose = checked_pose(told);
     const bool is_sound = pose || pose.error() == PoseRefusal::translation;
@@ -79,18 +80,18 @@ std::optional<RefinementStateObject> object_from(const tactus_v5_RefinementState
     {
         return std::nullopt;
     }
-    return RefinementStateObject{wire.host_epoch, wire.object, wire.number, wire.model,
+    return RefinementStateObject{wire.server_epoch, wire.object, wire.number, wire.model,
                                  pose ? pose.value() : told};
 }
 
-/// True if the chunk's number is possible and above the last one of its list.
+/// True if the model may have this chunk and its number is above `last`, none at first.
 template <typename Last>
 bool is_next_chunk(ChunkId chunk, const Last& last)
 {
     return chunk.value <= kMaxRecords >> kRecordsPerChunkLog2 && (!last || chunk > *last);
 }
 
-/// Models with their pages and requests; none if the counts are inconsistent or the order is wrong.
+/// Models with their pages and requests; none if counts do not add up or chunks do not ascend.
 std::optional<std::vector<RefinementStateModel>>
 models_from(const tactus_v5_RefinementState& sample)
 {
@@ -218,7 +219,7 @@ tactus_v5_RefinementStateTool to_wire(const RefinementStateTool& tool)
 tactus_v5_RefinementStateObject to_wire(const RefinementStateObject& object)
 {
     tactus_v5_RefinementStateObject wire = {};
-    wire.host_epoch = object.host_epoch;
+    wire.server_epoch = object.server_epoch;
     wire.object = object.object;
     wire.number = object.number;
     wire.model = static_cast<std::uint16_t>(object.model);

@@ -24,8 +24,8 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<RefinementStateWriter>, Refusal>
     create(const Domain& domain, std::string controller_name);
 
-    /// Sends a refinement state to all readers; never waits. Models, objects, tools and pages are
-    /// within their limits, and objects name one of the models (asserted).
+    /// Sends a refinement state to all readers; never waits. The state must keep the limits of
+    /// transport/front.hpp, and its objects must refer to its models (asserted).
     void write(const RefinementState& front);
 
     /// True if there is a reader.
@@ -43,14 +43,14 @@ private:
     std::uint64_t sent_{0};
 };
 
-/// Newest refinement state of a controller.
+/// Newest refinement state of one controller.
 struct SeenFront
 {
     ControllerId id{};
     std::uint64_t serial{0};
     RefinementState front;
-    std::uint64_t writer{0}; ///< Handle of the last sample's writer.
-    /// True if a program, perhaps another one, ended this controller's instance.
+    std::uint64_t writer{0}; ///< DDS handle of the writer of the last sample.
+    /// True if any program ended this controller's instance in DDS; poll() then checks its writer.
     bool is_disputed{false};
 };
 
@@ -58,20 +58,20 @@ struct SeenFront
 class RefinementStateReader
 {
 public:
-    /// Maximum number of controllers; samples of further ones are ignored.
+    /// Maximum number of controllers; samples of others are refused.
     static constexpr std::size_t kMaxSeen = 64;
 
     /// `domain` must outlive the reader.
     [[nodiscard]] static Result<std::unique_ptr<RefinementStateReader>, Refusal>
     create(const Domain& domain);
 
-    /// Takes new samples, and removes controllers that left or fell silent (500 ms). Bounded, never
-    /// waits.
+    /// Takes new samples, and removes controllers that left or were silent for 500 ms. Bounded,
+    /// never waits.
     void poll();
 
-    /// States in the order of discovery. Valid until the next poll().
+    /// States in the order of discovery of their controllers. Valid until the next poll().
     [[nodiscard]] const std::vector<SeenFront>& fronts() const noexcept { return fronts_; }
-    /// Number of samples refused: inconsistent, with numbers out of range, or of controllers beyond
+    /// Number of refused samples: inconsistent, with numbers out of range, or of controllers beyond
     /// kMaxSeen.
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 

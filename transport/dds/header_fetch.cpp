@@ -17,14 +17,13 @@ namespace tactus::dds
 namespace
 {
 
-/// Parts requested at once: 1.8 MB.
+/// Maximum number of parts in one request, 1.8 MB.
 constexpr std::size_t kPartsAtOnce = 64;
-/// Silence after which missing parts are requested again; longer than any round trip that is usable
-/// for haptics.
+/// Time after which missing parts are requested again.
 constexpr auto kAgain = std::chrono::milliseconds(100);
-/// Time in which another server may appear after all present ones sent wrong headers.
+/// Time after the first wrong header during which another server may appear.
 constexpr auto kAnother = std::chrono::seconds(1);
-/// Maximum number of remembered wrong servers.
+/// Maximum number of remembered servers that sent wrong headers.
 constexpr std::size_t kMaxRefused = 256;
 
 } // namespace
@@ -42,7 +41,7 @@ HeaderFetch::HeaderFetch(PieceExchange& exchange, const Catalogue& catalogue,
         offer.base_bytes > kMaxBaseBytes)
     {
         refuse(fmt::format("is announced with a header of {} bytes and a base mesh of {}; at most "
-                           "{} and {}",
+                           "{} and {} are allowed",
                            offer.header_bytes, offer.base_bytes, kMaxHeaderBytes, kMaxBaseBytes));
     }
 }
@@ -66,10 +65,10 @@ HeaderFetch::State HeaderFetch::step()
     return now - progress_ < kSilence ? State::under_way : State::silent;
 }
 
-void HeaderFetch::receive(std::uint64_t host_epoch, ContentKey key,
+void HeaderFetch::receive(std::uint64_t server_epoch, ContentKey key,
                           std::span<const std::byte> bytes)
 {
-    if (host_epoch == offer_.host_epoch && header_.receive(key, bytes))
+    if (server_epoch == offer_.server_epoch && header_.receive(key, bytes))
     {
         open_ -= open_ > 0 ? 1 : 0;
         progress_ = Clock::now();
@@ -79,14 +78,14 @@ void HeaderFetch::receive(std::uint64_t host_epoch, ContentKey key,
 /// Requests missing parts while the server is present.
 void HeaderFetch::ask()
 {
-    if (!catalogue_.has_host(offer_.host_epoch))
+    if (!catalogue_.has_server(offer_.server_epoch))
     {
         return;
     }
     std::vector<ContentKey> keys;
     header_.list_missing(keys, kPartsAtOnce);
     open_ = keys.size();
-    exchange_.ask(offer_.host_epoch, offer_.model, keys, 0);
+    exchange_.ask(offer_.server_epoch, offer_.model, keys, 0);
 }
 
 HeaderFetch::State HeaderFetch::refuse(std::string objection)
@@ -109,9 +108,9 @@ HeaderFetch::State HeaderFetch::check()
     }
     if (header.value().fields().base_bytes != offer_.base_bytes)
     {
-        return refuse(fmt::format("is announced with a base mesh of {} bytes, but its header names "
-                                  "one of {}",
-                                  offer_.base_bytes, header.value().fields().base_bytes));
+        return refuse(
+            fmt::format("is announced with a base mesh of {} bytes, but its header states {}",
+                        offer_.base_bytes, header.value().fields().base_bytes));
     }
     return state_ = State::done;
 }
@@ -124,7 +123,7 @@ HeaderSearch::HeaderSearch(PieceExchange& exchange, Catalogue& catalogue, ModelS
 
 HeaderSearch::State HeaderSearch::step()
 {
-    bool is_silent = true; // True if all fetches are silent.
+    bool is_silent = true; // False if any fetch is not silent.
     for (std::size_t i = 0; i < fetches_.size();)
     {
         HeaderFetch& fetch = *fetches_[i];
@@ -151,7 +150,7 @@ HeaderSearch::State HeaderSearch::step()
         std::exchange(seen_catalogue_, catalogue_.version()) != catalogue_.version();
     if (is_silent && (has_news || now - looked_ >= kAgain))
     {
-        look_for_hosts(is_first ? 1 : kHostsAtOnce);
+        look_for_servers(is_first ? 1 : kServersAtOnce);
     }
     const bool is_over = !refused_.empty() && now - refused_since_ >= kAnother;
     return !fetches_.empty() ? State::under_way : is_over ? State::refused : State::not_published;
@@ -163,29 +162,29 @@ void HeaderSearch::refuse(const Catalogue::Offer& offer)
     offer_ = offer;
     if (refused_.size() < kMaxRefused)
     {
-        refused_.push_back(offer.host_epoch);
+        refused_.push_back(offer.server_epoch);
     }
-    std::erase_if(fetches_, [host = offer.host_epoch](const auto& fetch)
-                  { return fetch->offer().host_epoch == host; });
+    std::erase_if(fetches_, [server = offer.server_epoch](const auto& fetch)
+                  { return fetch->offer().server_epoch == server; });
 }
 
-/// Starts fetches from further servers, in the order of discovery, up to `most` at a time. If there
-/// are more, the oldest fetches end.
-void HeaderSearch::look_for_hosts(std::size_t most)
+/// Starts fetches from up to `most` servers that are not being asked. If there are then more than
+/// `most` fetches, the oldest end.
+void HeaderSearch::look_for_servers(std::size_t most)
 {
     looked_ = Clock::now();
     std::erase_if(fetches_, [this](const auto& fetch)
-                  { return !catalogue_.has_host(fetch->offer().host_epoch); });
+                  { return !catalogue_.has_server(fetch->offer().server_epoch); });
     std::vector<const Catalogue::Offer*> others = catalogue_.servers_of(selector_);
     std::erase_if(others,
                   [this](const Catalogue::Offer* offer)
                   {
                       const auto is_it = [offer](const auto& fetch)
-                      { return fetch->offer().host_epoch == offer->host_epoch; };
-                      return std::ranges::find(refused_, offer->host_epoch) != refused_.end() ||
+                      { return fetch->offer().server_epoch == offer->server_epoch; };
+                      return std::ranges::find(refused_, offer->server_epoch) != refused_.end() ||
                              std::ranges::any_of(fetches_, is_it);
                   });
-    // Rotation: servers after the last one that was asked, then from the first.
+    // Servers are asked in turn: those after the last one asked first.
     const auto after = std::ranges::find_if(others, [this](const Catalogue::Offer* offer)
                                             { return offer->arrival > last_arrival_; });
     std::rotate(others.begin(), after, others.end());

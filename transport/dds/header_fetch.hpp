@@ -23,9 +23,9 @@ public:
     enum class State : std::uint8_t
     {
         under_way,
-        silent,  ///< Under way, but nothing has arrived for kSilence.
-        done,    ///< header() is complete and has the right hash.
-        refused, ///< Final; objection() has the reason.
+        silent,  ///< Under way, without a new part for kSilence.
+        done,    ///< header() is complete and verified.
+        refused, ///< Final: the header is wrong; objection() has the reason.
     };
 
     /// `exchange` and `catalogue` must outlive the fetch.
@@ -34,7 +34,7 @@ public:
     HeaderFetch& operator=(const HeaderFetch&) = delete;
     ~HeaderFetch() { exchange_.remove(*this); }
 
-    /// Requests missing parts, again after a timeout. Never waits; the exchange must be stepped
+    /// Requests missing parts, again after a timeout. Never waits. Call PieceExchange::step()
     /// between two calls.
     State step();
 
@@ -45,7 +45,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    void receive(std::uint64_t host_epoch, ContentKey key,
+    void receive(std::uint64_t server_epoch, ContentKey key,
                  std::span<const std::byte> bytes) override;
     void ask();
     State refuse(std::string objection);
@@ -57,14 +57,14 @@ private:
     PartIntake header_;
     State state_{State::under_way};
     std::string objection_;
-    std::size_t open_{0}; ///< Parts requested last that have not arrived.
+    std::size_t open_{0}; ///< Number of parts in the last request that have not arrived.
     Clock::time_point asked_{};
-    Clock::time_point progress_; ///< Time of the start or of the last part.
+    Clock::time_point progress_; ///< Time when the fetch began or a part last arrived.
 };
 
-/// Finds a model and fetches its header from the first of its servers that answers. If one is
-/// silent for kSilence, leaves, or sends wrong bytes, all others are asked, kHostsAtOnce at a time.
-/// One thread.
+/// Finds a model and fetches its header from the first of its servers that answers. If that server
+/// is silent for kSilence, leaves or sends wrong bytes, the others are asked, kServersAtOnce at a
+/// time. One thread.
 class HeaderSearch
 {
 public:
@@ -72,42 +72,42 @@ public:
     {
         not_published,
         under_way,
-        done, ///< offer() is that of the server that sent header().
-        /// Every server sent a wrong header for a second; objection() has the last reason.
+        done, ///< header() is verified; offer() is from the server that sent it.
+        /// All servers have sent wrong headers for a second; objection() has the last reason.
         refused,
     };
 
     /// `exchange` and `catalogue` must outlive the search.
     HeaderSearch(PieceExchange& exchange, Catalogue& catalogue, ModelSelector selector);
 
-    /// Never waits; the exchange must be stepped between two calls. Continues after a refusal,
-    /// since a correct server may appear.
+    /// Never waits. Call PieceExchange::step() between two calls. The search goes on after
+    /// `refused`, since a correct server may appear.
     State step();
-    /// Excludes the server of this offer from the search.
+    /// Ends the fetch from this offer's server and never asks the server again.
     void refuse(const Catalogue::Offer& offer);
 
     [[nodiscard]] const ModelSelector& selector() const noexcept { return selector_; }
-    /// Offer of the server that was asked last, or that sent the header.
+    /// Offer of the server that sent the header; before that, of the server asked or refused last.
     [[nodiscard]] const Catalogue::Offer& offer() const noexcept { return offer_; }
     [[nodiscard]] const std::string& objection() const noexcept { return objection_; }
     [[nodiscard]] std::vector<std::byte>& header() noexcept { return fetches_.front()->header(); }
 
 private:
     using Clock = std::chrono::steady_clock;
-    void look_for_hosts(std::size_t most);
+    void look_for_servers(std::size_t most);
 
     PieceExchange& exchange_;
     Catalogue& catalogue_;
     ModelSelector selector_;
     Catalogue::Offer offer_;
-    /// Open fetches; at the end only the complete one.
+    /// Fetches under way; after `done` only the complete one.
     std::vector<std::unique_ptr<HeaderFetch>> fetches_;
-    std::vector<std::uint64_t> refused_; ///< Servers that sent wrong headers.
+    std::vector<std::uint64_t> refused_; ///< Epochs of servers that refuse() excluded.
     std::string objection_;
     Clock::time_point refused_since_{};
     Clock::time_point looked_{}; ///< Time of the last search for other servers.
     std::uint64_t seen_catalogue_{0};
-    std::uint64_t last_arrival_{0}; ///< Arrival number of the server that was asked last.
+    std::uint64_t last_arrival_{0}; ///< Catalogue::Offer::arrival of the last server asked.
 };
 
 } // namespace tactus::dds

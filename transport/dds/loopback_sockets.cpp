@@ -35,11 +35,11 @@ bool receives_from_everywhere(int descriptor)
            address.sin_addr.s_addr == htonl(INADDR_ANY);
 }
 
-/// Sockets of this process that receive from every interface, ascending.
+/// Descriptors of this process's sockets that receive from every interface, ascending.
 std::vector<int> open_to_everywhere()
 {
     std::vector<int> found;
-    std::error_code ignored; // A descriptor that is closed meanwhile is skipped.
+    std::error_code ignored; // A descriptor closed meanwhile is skipped.
     for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored))
     {
         const std::string name = entry.path().filename().string();

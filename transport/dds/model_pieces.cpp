@@ -18,7 +18,7 @@ Result<ModelPieces, Refusal> ModelPieces::create(PublishedModel model)
     if (header_bytes > kMaxHeaderBytes || pieces.base_.size() > kMaxBaseBytes)
     {
         return Refusal{fmt::format("model '{}' cannot be published: its header has {} bytes and "
-                                   "its base mesh {}; at most {} and {}",
+                                   "its base mesh {}; at most {} and {} are allowed",
                                    pieces.model().name, header_bytes, pieces.base_.size(),
                                    kMaxHeaderBytes, kMaxBaseBytes)};
     }

@@ -23,13 +23,13 @@ struct PublishedModel
     ModelStore store;
 };
 
-/// A published model in the pieces that go over the wire: index pages, chunks, and header and base
-/// mesh in parts. One thread, that of the server; reading waits for the file.
+/// Pieces of a published model, as sent: index pages, chunks, and the parts of header and base
+/// mesh. One thread, that of the server; reading waits for the file.
 class ModelPieces
 {
 public:
-    /// Reads the base mesh and keeps it. Refused if that fails, or if header or base mesh are
-    /// larger than a controller accepts.
+    /// Reads and keeps the base mesh. Refused if it cannot be read, or if header or base mesh are
+    /// larger than kMaxHeaderBytes or kMaxBaseBytes.
     [[nodiscard]] static Result<ModelPieces, Refusal> create(PublishedModel model);
 
     [[nodiscard]] const PublishedModel& model() const noexcept { return model_; }
@@ -38,8 +38,8 @@ public:
     [[nodiscard]] bool has(ContentKey key) const noexcept;
     /// Bytes of a piece, which must exist.
     [[nodiscard]] std::size_t bytes(ContentKey key) const noexcept;
-    /// Reads a piece, which must exist, into `out` and verifies it; no allocation once `out` is
-    /// large enough.
+    /// Reads a piece, which must exist, into `out` and verifies its hash. No allocation once `out`
+    /// is large enough.
     [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& out) const;
 
 private:

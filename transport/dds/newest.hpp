@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-// One thread, that of the reader.
+// One thread, the one that uses the reader.
 namespace tactus::dds
 {
 
-/// Controller of a sample: the GUID of its participant.
+/// Identity of the controller that a sample states: the GUID of its participant.
 template <typename Sample>
 ControllerId controller_of(const Sample& sample)
 {
@@ -27,12 +27,11 @@ ControllerId controller_of(const Sample& sample)
     return id;
 }
 
-/// Takes new samples of a topic whose instances are controllers. `seen` then has the newest state
-/// of each controller, in the order of discovery, at most `seen_max`; ended ones are removed.
-/// `read` converts a sample to a Seen, except for Seen::writer and Seen::is_disputed, or returns
-/// none if the sample is invalid. Returns the number of refused samples: invalid ones, and those of
-/// controllers beyond `seen_max`. The participants' refusals count them as well. Bounded, never
-/// waits; allocates.
+/// Takes new samples of a topic with one instance for each controller, and updates `seen`: the
+/// newest state of at most `seen_max` controllers, in the order of discovery. Ended controllers are
+/// removed. `read` converts a sample to a Seen, without `writer` and `is_disputed`; none refuses
+/// the sample. Returns the number of refused samples, with those of controllers beyond `seen_max`;
+/// `participants` counts them too. Bounded, never waits; allocates.
 template <typename Sample, typename Seen, typename Read>
 [[nodiscard]] std::uint64_t take_newest(const Endpoint& reader, Participants& participants,
                                         std::size_t seen_max, std::vector<Seen>& seen,
@@ -58,7 +57,7 @@ template <typename Sample, typename Seen, typename Read>
         }
         return true;
     };
-    // Only the controller's own participant can end it.
+    // Only the controller's own participant can end the controller.
     const auto end = [&](const ControllerId& controller, std::uint64_t writer)
     {
         const auto who = participants.writer_of(writer);

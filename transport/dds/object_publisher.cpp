@@ -23,20 +23,20 @@ namespace tactus::dds
 namespace
 {
 
-/// Repetitions of a pose, one a beat.
+/// Number of times each pose is repeated, one every kMotionBeat, since samples may be lost.
 constexpr int kRepeats = 3;
-/// Interval of samples without an object: a controller that joins waits for one.
+/// Interval of motion before the first object: a controller that joins waits for a sample.
 constexpr std::chrono::milliseconds kEmptyBeat{100};
-/// Rest after which an object's record is sent again, for late joiners.
+/// Time at rest after which an object's record is written again, for controllers that join later.
 constexpr auto kRest = std::chrono::milliseconds(500);
-/// Least interval between new writers of motion, and the time until a new one takes over.
+/// Least interval of try_renew_motion(), and the longest time until a new writer takes over.
 constexpr auto kRenewalEvery = std::chrono::milliseconds(300);
 constexpr auto kHandOver = std::chrono::milliseconds(250);
-/// Predicate of a refusal, after the object's name.
+/// Text of a refusal after the name of the object.
 constexpr const char* kBadMaterial =
-    "has a material with stiffness not above 0, friction, damping or viscosity below 0, dynamic "
-    "friction above static friction, or a texture higher than a thirty-second of its length of "
-    "0.0001 to 1 m";
+    "has an invalid material: the stiffness must be above 0, friction, damping and viscosity at "
+    "least 0, the dynamic friction at most the static friction, and the texture height at most "
+    "1/32 of the texture length of 0.0001 to 1 m";
 
 } // namespace
 
@@ -44,13 +44,13 @@ Result<std::unique_ptr<ObjectPublisher>, Refusal>
 ObjectPublisher::create(const Domain& domain, std::vector<ContentHash> models)
 {
     std::unique_ptr<ObjectPublisher> publisher(new ObjectPublisher(domain, std::move(models)));
-    const std::uint64_t epoch = publisher->host_epoch_;
-    auto records = make_writer(domain, Topic::objects, host_partition(epoch));
+    const std::uint64_t epoch = publisher->server_epoch_;
+    auto records = make_writer(domain, Topic::objects, server_partition(epoch));
     if (!records)
     {
         return records.error();
     }
-    auto motion = make_writer(domain, Topic::motion, host_partition(epoch));
+    auto motion = make_writer(domain, Topic::motion, server_partition(epoch));
     if (!motion)
     {
         return motion.error();
@@ -61,7 +61,7 @@ ObjectPublisher::create(const Domain& domain, std::vector<ContentHash> models)
 }
 
 ObjectPublisher::ObjectPublisher(const Domain& domain, std::vector<ContentHash> models)
-    : domain_(&domain), host_epoch_(domain.participants().own_epoch()), models_(std::move(models))
+    : domain_(&domain), server_epoch_(domain.participants().own_epoch()), models_(std::move(models))
 {
 }
 
@@ -76,7 +76,7 @@ Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
     }
     if (!pose)
     {
-        return refuse(fmt::format("stands nowhere: {}",
+        return refuse(fmt::format("has an invalid pose: {}",
                                   kPoseRefusalNames[static_cast<std::size_t>(pose.error())]));
     }
     if (!is_sound(object.material))
@@ -89,7 +89,7 @@ Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
     }
     if (free_.empty() && slots_.size() == kMaxObjects)
     {
-        return refuse(fmt::format("is one too many: {} are the limit", kMaxObjects));
+        return refuse(fmt::format("is refused: at most {} objects are served", kMaxObjects));
     }
     if (free_.empty())
     {
@@ -99,7 +99,7 @@ Result<std::uint32_t, Refusal> ObjectPublisher::show(const ShownObject& object)
     const std::uint32_t number = free_.back();
     free_.pop_back();
     Slot& slot = slots_[number];
-    const bool is_listed = slot.is_listed; // State of the number's previous object.
+    const bool is_listed = slot.is_listed; // Set if the number's previous object is listed.
     slot = {object, slot.generation + 1, true};
     slot.is_listed = is_listed;
     slot.shown.pose = pose.value();
@@ -187,7 +187,7 @@ bool ObjectPublisher::try_renew_motion(Clock::time_point now)
     {
         return false;
     }
-    auto motion = make_writer(*domain_, Topic::motion, host_partition(host_epoch_));
+    auto motion = make_writer(*domain_, Topic::motion, server_partition(server_epoch_));
     if (!motion)
     {
         return false;
@@ -226,8 +226,9 @@ void ObjectPublisher::wake(std::uint32_t object)
     }
 }
 
-/// Writes an object's record. If the writer has no room, a later step does it. Such a write waits
-/// for 5 ms, so there is at most one a step: otherwise a dead controller would stop all motion.
+/// Writes the record of an object, or leaves it to a later step if the writer has no room. A failed
+/// write waits 5 ms; after one, none is tried in this step, so that a dead controller does not stop
+/// all motion.
 void ObjectPublisher::write_record(std::uint32_t object)
 {
     Slot& slot = slots_[object];
@@ -239,7 +240,7 @@ void ObjectPublisher::write_record(std::uint32_t object)
     }
     const ShownObject& shown = slot.shown;
     tactus_v5_ObjectRecord record = {};
-    record.host_epoch = host_epoch_;
+    record.server_epoch = server_epoch_;
     record.object = object;
     record.generation = slot.generation;
     shown.name.copy(static_cast<char*>(record.name), kMaxNameBytes);
@@ -255,11 +256,11 @@ void ObjectPublisher::write_record(std::uint32_t object)
     }
 }
 
-/// Writes the end of an object, under the same limit. Its number stays taken until then.
+/// Writes the end of an object like write_record(). Its number stays taken until then.
 void ObjectPublisher::write_end(std::uint32_t object)
 {
     tactus_v5_ObjectRecord record = {};
-    record.host_epoch = host_epoch_;
+    record.server_epoch = server_epoch_;
     record.object = object;
     is_full_ = is_full_ || dds_dispose(records_.handle, &record) != DDS_RETCODE_OK;
     slots_[object].owes_record = is_full_;
@@ -299,9 +300,9 @@ void ObjectPublisher::send(std::span<const std::uint32_t> moved, Clock::time_poi
         objects.at(i) = {moved[i], slot.generation, to_wire(slot.shown.pose)};
     }
     tactus_v5_Motion sample = {};
-    sample.host_epoch = host_epoch_;
+    sample.server_epoch = server_epoch_;
     sample.serial = ++serial_;
-    sample.host_time_ns =
+    sample.server_time_ns =
         std::chrono::duration_cast<std::chrono::nanoseconds>(now.time_since_epoch()).count();
     sample.objects = static_cast<std::uint32_t>(count_);
     const auto count = static_cast<std::uint32_t>(moved.size());

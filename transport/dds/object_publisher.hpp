@@ -17,47 +17,48 @@
 namespace tactus::dds
 {
 
-/// Interval at which a server with objects sends motion, whether they move or not. Controllers take
-/// poses for stale after 100 ms of silence, so four lost samples in a row do no harm.
+/// Interval at which a server with objects sends motion, an empty sample if nothing moves. Poses
+/// are stale after 100 ms of silence, so four samples in a row may be lost.
 inline constexpr std::chrono::milliseconds kMotionBeat{20};
 
-/// Shows objects to controllers while a program runs: objects are added, moved and removed. DdsHost
-/// has one, and steps it. One thread. move() never waits; the other calls may, for 5 ms and once a
-/// step, if controllers do not take what was written.
+/// Publishes objects to controllers and adds, moves and removes them. Owned and stepped by
+/// DdsServer. One thread. move() never waits. The other calls wait up to 5 ms, once a step, if
+/// controllers do not take the written records.
 class ObjectPublisher
 {
 public:
-    /// `domain` must outlive the publisher; `models` are the hashes that the server has.
+    /// `domain` must outlive the publisher. `models` are the hashes of the models that the server
+    /// serves.
     [[nodiscard]] static Result<std::unique_ptr<ObjectPublisher>, Refusal>
     create(const Domain& domain, std::vector<ContentHash> models);
 
-    /// Adds an object. Returns its number for move(), feel(), remove() and telemetry. Refused, with
-    /// nothing shown: a bad name, material or pose, a model that the server lacks, or kMaxObjects
-    /// reached.
+    /// Adds an object and returns its number for move(), feel(), remove() and telemetry. Refused,
+    /// with nothing changed, for an invalid name, material or pose, a model that is not served, or
+    /// more than kMaxObjects.
     [[nodiscard]] Result<std::uint32_t, Refusal> show(const ShownObject& object);
-    /// Sets the pose from the next step() on. Refused, with nothing changed, if the numbers are not
-    /// a pose. The object must exist (asserted), also for the calls below.
+    /// Sets the pose, sent by the next step(). Refused, with nothing changed, if the pose is
+    /// invalid. The object must exist (asserted), also in feel() and remove().
     [[nodiscard]] Result<Done, PoseRefusal> move(std::uint32_t object, const Pose& pose);
-    /// Sets the material. Refused, with nothing changed, if the numbers are not a material. May
-    /// wait like show() if controllers have not taken earlier samples.
+    /// Sets the material. Refused, with nothing changed, if the material is invalid. May wait like
+    /// show().
     [[nodiscard]] Result<Done, Refusal> feel(std::uint32_t object, const Material& material);
-    /// Removes an object. Its number is reused only after controllers were notified.
+    /// Removes an object. Its number is free once the removal is written to the controllers.
     void remove(std::uint32_t object);
 
-    /// Sends all motion, in one sample if it fits, and the sign that the server is present. Call it
-    /// after moving, and at least every kMotionBeat. 0.1 us or less if nothing moves.
+    /// Sends all motion, or an empty sample as a sign that the server is present. Call it after
+    /// moves and at least every kMotionBeat. Takes 0.1 us or less if nothing moves.
     void step();
 
-    /// Replaces the writer of motion. The new one takes over once it has as many readers, or after
-    /// 250 ms; until then both exist, so no controller misses a sample. Three times a second at
-    /// most; false if it is not due.
+    /// Replaces the writer of motion. Both writers exist until the new one has as many readers, or
+    /// for 250 ms, so that no controller misses a sample. False within 300 ms of the last
+    /// replacement, or if no writer can be created.
     bool try_renew_motion(std::chrono::steady_clock::time_point now);
 
-    /// Time when step() has work though nothing moves.
+    /// Time at which step() has work even if nothing moves.
     [[nodiscard]] std::chrono::steady_clock::time_point next_beat() const noexcept;
 
     [[nodiscard]] std::size_t objects() const noexcept { return count_; }
-    /// Null if there is no object of that number.
+    /// The object of that number; null if there is none.
     [[nodiscard]] const ShownObject* find(std::uint32_t object) const noexcept;
 
 private:
@@ -69,8 +70,8 @@ private:
         bool is_shown{false};
         bool is_listed{false};   ///< True if the object is in awake_.
         bool has_moved{false};   ///< True if the object moved since the last sample.
-        bool owes_record{false}; ///< True if the last record written is outdated.
-        int repeats{0};          ///< Repetitions of its pose, in case samples are lost.
+        bool owes_record{false}; ///< True if the record, or the end, must still be written.
+        int repeats{0};          ///< Number of times its pose is still to be repeated.
         Clock::time_point moved{};
         Clock::time_point sent{};
     };
@@ -85,20 +86,20 @@ private:
     void send(std::span<const std::uint32_t> moved, Clock::time_point now);
 
     const Domain* domain_;
-    std::uint64_t host_epoch_;
+    std::uint64_t server_epoch_;
     std::vector<ContentHash> models_;
     Endpoint records_;
     Endpoint motion_;
-    Endpoint next_motion_; ///< Writer that replaces `motion_`.
+    Endpoint next_motion_; ///< Writer that will replace `motion_`; empty if none will.
     Clock::time_point renewed_{};
     std::vector<Slot> slots_;
-    std::vector<std::uint32_t> free_;  ///< Free numbers that were used before.
-    std::vector<std::uint32_t> awake_; ///< Numbers of the objects that are not at rest.
+    std::vector<std::uint32_t> free_;  ///< Free numbers below slots_.size().
+    std::vector<std::uint32_t> awake_; ///< Numbers of objects that moved recently or owe a record.
     std::vector<std::uint32_t> due_;
     std::size_t count_{0};
     std::uint64_t serial_{0};
     Clock::time_point last_sample_{};
-    bool is_full_{false}; ///< The writer of records had no room since the last step.
+    bool is_full_{false}; ///< True if the writer of records had no room since the last step().
 };
 
 } // namespace tactus::dds

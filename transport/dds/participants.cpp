@@ -23,7 +23,7 @@ namespace tactus::dds
 namespace
 {
 
-/// Maximum number of remembered handles, including those of deleted writers.
+/// Maximum number of remembered writers and participants, including deleted ones.
 constexpr std::size_t kMaxKnown = 16'384;
 constexpr std::string_view kTopicRoot = "tactus/v";
 
@@ -34,9 +34,9 @@ ParticipantId id_of(const dds_guid_t& guid)
     return id;
 }
 
-/// Takes DDS's changes since the last call: calls `visit(sample)` for present entries and
-/// `forget(sample)`, with only the key set, for ended ones. These are also taken from the reader
-/// `kept`, which would keep them forever. 1 us without changes.
+/// Takes changes from the built-in reader `news`: calls `visit(sample)` for present entities and
+/// `forget(sample)`, with only the key set, for ended ones. Ended ones are also removed from the
+/// reader `kept`, which otherwise keeps them permanently. 1 us without changes.
 template <typename Sample, typename Visit, typename Forget>
 void take_news(std::int32_t news, std::int32_t kept, Visit&& visit, Forget&& forget)
 {
@@ -59,7 +59,7 @@ void take_news(std::int32_t news, std::int32_t kept, Visit&& visit, Forget&& for
         });
 }
 
-/// Calls `visit(about, info)` with DDS's data of a participant; never for an unknown one.
+/// Calls `visit(about, info)` with the participant's data in DDS; no call if it is unknown.
 template <typename Visit>
 void read_participant(std::int32_t reader, const ParticipantId& who, Visit&& visit)
 {
@@ -87,7 +87,7 @@ std::string property(const dds_qos_t* qos, const char* name)
     return text;
 }
 
-/// Protocol version of a topic; none for a topic that is not of Tactus.
+/// Protocol version in the name of a topic; none for a topic of another program.
 std::optional<std::string> version_of(const char* topic)
 {
     std::string_view name(topic == nullptr ? "" : topic);
@@ -101,7 +101,7 @@ std::optional<std::string> version_of(const char* topic)
 
 } // namespace
 
-std::uint64_t host_epoch_of(const ParticipantId& participant) noexcept
+std::uint64_t server_epoch_of(const ParticipantId& participant) noexcept
 {
     const ContentHash hash = content_hash(std::as_bytes(std::span(participant)));
     std::uint64_t epoch = 0;
@@ -121,7 +121,7 @@ Participants::Participants(std::int32_t participant)
     dds_guid_t guid = {};
     dds_get_guid(participant, &guid);
     own_ = id_of(guid);
-    own_epoch_ = host_epoch_of(own_);
+    own_epoch_ = server_epoch_of(own_);
 }
 
 std::optional<ParticipantId> Participants::writer_of(std::uint64_t publication_handle)
@@ -154,10 +154,10 @@ std::optional<ParticipantId> Participants::writer_of(std::uint64_t publication_h
     return owner;
 }
 
-bool Participants::is_host(std::uint64_t publication_handle, std::uint64_t host_epoch)
+bool Participants::is_server(std::uint64_t publication_handle, std::uint64_t server_epoch)
 {
     const auto writer = writer_of(publication_handle);
-    return writer && host_epoch_of(*writer) == host_epoch;
+    return writer && server_epoch_of(*writer) == server_epoch;
 }
 
 void Participants::refuse(std::uint64_t publication_handle, Refused reason, std::uint32_t number)
@@ -189,15 +189,14 @@ void Participants::report_other_versions(RateLimitedLog& log)
             {
                 return;
             }
-            log.write(fmt::format("{} is refused: it speaks protocol version {}, this build {}",
+            log.write(fmt::format("{} is refused: its protocol version is {}, this build's is {}",
                                   name_of(who), *version, ours));
         },
         [](const dds_builtintopic_endpoint_t&) {});
 }
 
-/// Reports processes with many participants. Cyclone keeps some KB of each participant until its
-/// lease ends, without a bound, and a participant chooses its own lease; reporting is the only
-/// defence.
+/// Logs processes with many participants. Cyclone keeps a few KB of each until its lease ends, and
+/// participants choose their own lease. Cyclone has no limit, so a log line is the only defence.
 void Participants::report_crowds(RateLimitedLog& log)
 {
     take_news<dds_builtintopic_participant_t>(
@@ -291,7 +290,7 @@ std::set<std::string> Participants::names() const
 
 std::string Participants::name_of(const ParticipantId& who) const
 {
-    std::string name = "a program that is gone";
+    std::string name = "a program that has ended";
     read_participant(
         participants_, who,
         [&](const dds_builtintopic_participant_t& about, const dds_sample_info_t& info)
@@ -329,7 +328,7 @@ bool Participants::is_called(const ParticipantId& who, const std::string& server
 
 std::string Participants::certificate_of(const ParticipantId& who) const
 {
-    constexpr std::uint8_t kSecured = 0x80; // A GUID without security begins with the vendor's 01.
+    constexpr std::uint8_t kSecured = 0x80; // Without security a GUID begins with 0x01, the vendor.
     constexpr std::size_t kBytes = 6;
     if ((own_[0] & kSecured) == 0 || (who[0] & kSecured) == 0)
     {

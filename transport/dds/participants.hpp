@@ -17,65 +17,66 @@ namespace tactus::dds
 
 using ControllerId = ParticipantId;
 
-/// Name of a server on the wire, from its participant: samples of other participants that carry it
-/// are dropped.
-[[nodiscard]] std::uint64_t host_epoch_of(const ParticipantId& participant) noexcept;
+/// Epoch of a server: a hash of its participant. Samples with the epoch of another participant than
+/// their writer's are dropped.
+[[nodiscard]] std::uint64_t server_epoch_of(const ParticipantId& participant) noexcept;
 
-/// Participants on a domain, and the participant of each sample. All calls are safe from any
-/// thread, including those of Cyclone that deliver.
+/// Participants on a domain; finds the participant that wrote a sample. All calls are safe from any
+/// thread, including Cyclone's receiving threads.
 class Participants
 {
 public:
-    /// `participant` is this process's own; the instance must outlive all readers below it.
+    /// `participant` is the DDS handle of this process's participant. This object must outlive all
+    /// readers that were created with that handle.
     explicit Participants(std::int32_t participant);
 
     [[nodiscard]] const ParticipantId& own() const noexcept { return own_; }
     [[nodiscard]] std::uint64_t own_epoch() const noexcept { return own_epoch_; }
 
-    /// Participant whose writer a sample's publication_handle names; none if it is gone and was
-    /// never seen. 0.1 us, the first time 10 us.
+    /// Participant that owns the writer with this handle; none if it is gone and was never looked
+    /// up. 0.1 us; 10 us the first time.
     [[nodiscard]] std::optional<ParticipantId> writer_of(std::uint64_t publication_handle);
-    [[nodiscard]] bool is_host(std::uint64_t publication_handle, std::uint64_t host_epoch);
+    [[nodiscard]] bool is_server(std::uint64_t publication_handle, std::uint64_t server_epoch);
 
-    /// True if the writer that a sample's publication_handle names is present. 10 us.
+    /// True if the writer with this handle is present. 10 us.
     [[nodiscard]] bool is_writing(std::uint64_t publication_handle) const;
-    /// True if the participant is on the domain: heard within its lease. 10 us.
+    /// True if the participant is present: its lease has not expired. 10 us.
     [[nodiscard]] bool is_resident(const ParticipantId& who) const;
 
-    /// Program, process and machine of all other participants, sorted and unique. About 10 us each.
+    /// name_of() of all other participants, without duplicates. About 10 us for each.
     [[nodiscard]] std::set<std::string> names() const;
-    /// Program, process and machine as the participant reports them; with DDS Security also the
-    /// name of its certificate, which no other participant can use. 10 us.
+    /// Program, process and machine as reported by the participant. With DDS Security also its
+    /// certificate_of(), which no other participant can claim. 10 us.
     [[nodiscard]] std::string name_of(const ParticipantId& who) const;
-    /// True if `server` names the participant: MACHINE, MACHINE:PROCESS or cert:HEX
-    /// (is_valid_server). 10 us.
+    /// True if `server`, a text that passes is_valid_server(), names the participant. 10 us.
     [[nodiscard]] bool is_called(const ParticipantId& who, const std::string& server) const;
-    /// 12 hexadecimal digits with DDS Security: the hash of the subject of its certificate. They
-    /// begin its GUID, and the authentication plugin refuses a peer whose GUID begins with those of
-    /// another subject. Empty without DDS Security.
+    /// With DDS Security 12 hexadecimal digits, a hash of the subject of the certificate; otherwise
+    /// empty. The hash begins the GUID; the authentication plugin refuses a GUID that begins with
+    /// the hash of another subject.
     [[nodiscard]] std::string certificate_of(const ParticipantId& who) const;
 
-    /// Counts a refusal under the participant of a publication_handle; no effect if it is gone and
-    /// was never seen.
+    /// Counts a refusal for the participant that owns this writer. `number` is that of the refused
+    /// object or model.
     void refuse(std::uint64_t publication_handle, Refused reason, std::uint32_t number = 0);
     [[nodiscard]] Refusals& refusals() noexcept { return refusals_; }
 
-    /// Logs each participant that appeared since the last call and has topics of another version of
-    /// the protocol, once; each process with 32 participants, 320, and so on; the number of all
-    /// participants from 1,000 on; and refusals, see Refusals::report(). Cheap without events.
+    /// Logs news since the last call: participants with another version of the protocol, once each;
+    /// processes that reach 32 participants, then ten times as many, and so on; the number of all
+    /// participants at 1,000, then at ten times as many; and refusals (Refusals::report()). Cheap
+    /// without events.
     void report(RateLimitedLog& log);
     /// Number of participants on the domain, this one included, as of the last report().
     [[nodiscard]] std::size_t count() const noexcept { return here_.size(); }
 
 private:
-    /// Participants of one process.
+    /// Number of participants of one process, and the number at which the process is logged next.
     struct Crowd
     {
         std::size_t count{0};
         std::size_t told_at{kCrowd};
     };
-    /// Limits above which a process, and a domain, are reported: no honest one has so many
-    /// participants.
+    /// Numbers of participants of one process, and of a domain, at which they are logged; far above
+    /// those of normal use.
     static constexpr std::size_t kCrowd = 32;
     static constexpr std::size_t kMultitude = 1'000;
 
@@ -83,17 +84,19 @@ private:
     void report_crowds(RateLimitedLog& log);
     void forget_participant(const ParticipantId& who);
 
-    std::int32_t writers_; ///< Readers of DDS's built-in topics; they end with the participant.
+    /// Readers of DDS's built-in topics of writers and participants; deleted with the participant.
+    std::int32_t writers_;
     std::int32_t participants_;
-    std::int32_t writer_news_; ///< Readers of the same topics, emptied by report().
+    std::int32_t writer_news_; ///< Readers of the same topics for changes, emptied by report().
     std::int32_t participant_news_;
     ParticipantId own_{};
     std::uint64_t own_epoch_;
     std::mutex mutex_;
     std::map<std::uint64_t, ParticipantId> known_;
     std::set<ParticipantId> reported_;
-    std::map<std::string, Crowd> crowds_;       ///< Crowds by name of the process.
-    std::map<ParticipantId, std::string> here_; ///< Participants and the names of their processes.
+    std::map<std::string, Crowd> crowds_; ///< Crowds by name of the process.
+    /// Present participants, and the name of each one's process.
+    std::map<ParticipantId, std::string> here_;
     std::size_t told_at_{kMultitude};
     Refusals refusals_;
 };

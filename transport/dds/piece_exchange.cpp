@@ -18,14 +18,15 @@ namespace tactus::dds
 namespace
 {
 
-/// Interval of the sign of life with the credit, even without requests.
+/// Longest interval of samples to a server, with or without requests.
 constexpr auto kRenewal = std::chrono::milliseconds(200);
-/// Silence after a request, after which the credit is written off.
+/// Time without pieces after a request, after which the credit is written off.
 constexpr auto kWriteOff = std::chrono::milliseconds(400);
-/// Samples taken in one step; the rest waits in the reader for the next one.
+/// Maximum number of samples taken in one step; further ones wait in the reader.
 constexpr std::size_t kPiecesPerStep = 256;
-/// Servers that are gone but whose credit is kept: one that was thought dead continues its count.
-constexpr std::size_t kHostsKept = 64;
+/// Number of servers above which those that are gone are removed. Until then their credit is kept
+/// for servers that return.
+constexpr std::size_t kServersKept = 64;
 
 } // namespace
 
@@ -59,49 +60,49 @@ PieceExchange::PieceExchange(const Domain& domain, Catalogue& catalogue,
 {
 }
 
-void PieceExchange::ask(std::uint64_t host_epoch, std::uint32_t model,
+void PieceExchange::ask(std::uint64_t server_epoch, std::uint32_t model,
                         std::span<const ContentKey> keys, std::uint32_t generation)
 {
-    Host& host = host_of(host_epoch);
-    host.generation = generation;
+    Server& server = server_of(server_epoch);
+    server.generation = generation;
     for (const ContentKey key : keys)
     {
-        host.requests.push_back({model, key});
+        server.requests.push_back({model, key});
     }
 }
 
-void PieceExchange::ask_for_objects(std::uint64_t host_epoch)
+void PieceExchange::ask_for_objects(std::uint64_t server_epoch)
 {
-    Host& host = host_of(host_epoch);
-    if (host.objects == Objects::not_wanted)
+    Server& server = server_of(server_epoch);
+    if (server.objects == Objects::not_wanted)
     {
-        host.objects = Objects::waits;
-        host.last_sent = {}; // Send at once.
+        server.objects = Objects::waits;
+        server.last_sent = {}; // 0: send in the next step.
     }
 }
 
-bool PieceExchange::is_let_in(std::uint64_t host_epoch) const
+bool PieceExchange::is_let_in(std::uint64_t server_epoch) const
 {
-    const auto host = std::ranges::find(hosts_, host_epoch, &Host::epoch);
-    return host != hosts_.end() && host->is_let_in;
+    const auto server = std::ranges::find(servers_, server_epoch, &Server::epoch);
+    return server != servers_.end() && server->is_let_in;
 }
 
-void PieceExchange::tell_objects_are_here(std::uint64_t host_epoch, bool hears_motion)
+void PieceExchange::tell_objects_are_here(std::uint64_t server_epoch, bool hears_motion)
 {
-    Host& host = host_of(host_epoch);
+    Server& server = server_of(server_epoch);
     const Objects objects = hears_motion ? Objects::are_here : Objects::hear_no_motion;
-    if (host.objects != objects)
+    if (server.objects != objects)
     {
-        host.objects = objects;
-        host.last_sent = {};
+        server.objects = objects;
+        server.last_sent = {};
     }
 }
 
-void PieceExchange::leave_objects(std::uint64_t host_epoch)
+void PieceExchange::leave_objects(std::uint64_t server_epoch)
 {
-    Host& host = host_of(host_epoch);
-    host.objects = Objects::not_wanted;
-    host.is_let_in = false;
+    Server& server = server_of(server_epoch);
+    server.objects = Objects::not_wanted;
+    server.is_let_in = false;
 }
 
 void PieceExchange::step()
@@ -111,46 +112,47 @@ void PieceExchange::step()
     if (catalogue_.version() != seen_catalogue_)
     {
         seen_catalogue_ = catalogue_.version();
-        forget_hosts();
+        forget_servers();
     }
     take_pieces();
-    for (Host& host : hosts_)
+    for (Server& server : servers_)
     {
-        if (catalogue_.has_host(host.epoch))
+        if (catalogue_.has_server(server.epoch))
         {
-            keep_credit(host);
+            keep_credit(server);
         }
         else
         {
-            host.requests.clear(); // The requester asks again, then any server of the model.
-            host.awaits_pieces = false;
+            // The receivers request them again, from any server of the model.
+            server.requests.clear();
+            server.awaits_pieces = false;
         }
     }
 }
 
-PieceExchange::Host* PieceExchange::find(std::uint64_t epoch)
+PieceExchange::Server* PieceExchange::find(std::uint64_t epoch)
 {
-    const auto host = std::ranges::find(hosts_, epoch, &Host::epoch);
-    return host == hosts_.end() ? nullptr : &*host;
+    const auto server = std::ranges::find(servers_, epoch, &Server::epoch);
+    return server == servers_.end() ? nullptr : &*server;
 }
 
-PieceExchange::Host& PieceExchange::host_of(std::uint64_t epoch)
+PieceExchange::Server& PieceExchange::server_of(std::uint64_t epoch)
 {
-    if (Host* host = find(epoch); host != nullptr)
+    if (Server* server = find(epoch); server != nullptr)
     {
-        return *host;
+        return *server;
     }
-    hosts_.emplace_back().epoch = epoch;
-    return hosts_.back();
+    servers_.emplace_back().epoch = epoch;
+    return servers_.back();
 }
 
-void PieceExchange::forget_hosts()
+void PieceExchange::forget_servers()
 {
-    std::size_t too_many = hosts_.size() - std::min(hosts_.size(), kHostsKept);
-    std::erase_if(hosts_,
-                  [&](const Host& host)
+    std::size_t too_many = servers_.size() - std::min(servers_.size(), kServersKept);
+    std::erase_if(servers_,
+                  [&](const Server& server)
                   {
-                      const bool goes = too_many > 0 && !catalogue_.has_host(host.epoch);
+                      const bool goes = too_many > 0 && !catalogue_.has_server(server.epoch);
                       too_many -= goes ? 1 : 0;
                       return goes;
                   });
@@ -162,21 +164,22 @@ void PieceExchange::take_pieces()
         chunks_.handle, kPiecesPerStep,
         [&](const tactus_v5_Pieces& sample, const dds_sample_info_t& info)
         {
-            Host* host = info.valid_data ? find(sample.host_epoch) : nullptr;
-            if (host == nullptr)
+            Server* server = info.valid_data ? find(sample.server_epoch) : nullptr;
+            if (server == nullptr)
             {
                 return;
             }
-            host->is_let_in = host->is_let_in || sample.lets_in;
+            server->is_let_in = server->is_let_in || sample.lets_in;
             if (!sample.lets_in)
             {
                 const std::span payload(sample.payload._buffer, sample.payload._length);
-                hand_over(std::as_bytes(payload), *host, sample.sent);
+                hand_over(std::as_bytes(payload), *server, sample.sent);
             }
         });
 }
 
-void PieceExchange::hand_over(std::span<const std::byte> payload, Host& host, std::uint64_t sent)
+void PieceExchange::hand_over(std::span<const std::byte> payload, Server& server,
+                              std::uint64_t sent)
 {
     std::uint64_t pieces = 0;
     PieceReader reader(payload);
@@ -192,24 +195,24 @@ void PieceExchange::hand_over(std::span<const std::byte> payload, Host& host, st
         {
             if (receiver->model() == piece->key.model)
             {
-                receiver->receive(host.epoch, key, piece->bytes);
+                receiver->receive(server.epoch, key, piece->bytes);
             }
         }
     }
-    host.credit.on_sample(sent, pieces);
-    host.awaits_pieces = false;
-    host.write_offs = 0;
-    host.last_progress = Clock::now();
+    server.credit.on_sample(sent, pieces);
+    server.awaits_pieces = false;
+    server.write_offs = 0;
+    server.last_progress = Clock::now();
 }
 
-void PieceExchange::keep_credit(Host& host)
+void PieceExchange::keep_credit(Server& server)
 {
     const auto now = Clock::now();
-    if (host.awaits_pieces && now - host.last_progress >= kWriteOff)
+    if (server.awaits_pieces && now - server.last_progress >= kWriteOff)
     {
-        host.credit.write_off();
-        host.last_progress = now;
-        if (++host.write_offs > 1) // A forged packet may have made the server ignore our writers.
+        server.credit.write_off();
+        server.last_progress = now;
+        if (++server.write_offs > 1) // A forged packet may make the server ignore the writers.
         {
             if (auto old = wanted_->try_renew(now))
             {
@@ -217,40 +220,40 @@ void PieceExchange::keep_credit(Host& host)
             }
         }
     }
-    const bool is_half_used = host.credit.granted() >= host.granted_sent + kCreditPieces / 2;
-    if (!host.requests.empty() || is_half_used || now - host.last_sent >= kRenewal)
+    const bool is_half_used = server.credit.granted() >= server.granted_sent + kCreditPieces / 2;
+    if (!server.requests.empty() || is_half_used || now - server.last_sent >= kRenewal)
     {
-        send(host);
+        send(server);
     }
 }
 
-/// Sends the requests, or a sign of life. They count as sent even if that fails: a lost request is
-/// repeated.
-void PieceExchange::send(Host& host)
+/// Sends the queued requests and the credit, and empties the queue even if the write fails:
+/// receivers repeat lost requests.
+void PieceExchange::send(Server& server)
 {
     const auto now = Clock::now();
-    if (!host.requests.empty() && !host.awaits_pieces)
+    if (!server.requests.empty() && !server.awaits_pieces)
     {
-        host.awaits_pieces = true;
-        host.last_progress = now;
+        server.awaits_pieces = true;
+        server.last_progress = now;
     }
     tactus_v5_Wanted wanted = {};
     std::memcpy(wanted.controller, controller_.data(), controller_.size());
-    wanted.host_epoch = host.epoch;
+    wanted.server_epoch = server.epoch;
     controller_name_.copy(static_cast<char*>(wanted.controller_name), kMaxNameBytes);
-    wanted.generation = host.generation;
-    wanted.objects = static_cast<std::uint8_t>(host.objects);
-    wanted.seen = host.credit.seen();
-    wanted.granted = host.credit.granted();
-    wanted.received = host.credit.received();
+    wanted.generation = server.generation;
+    wanted.objects = static_cast<std::uint8_t>(server.objects);
+    wanted.seen = server.credit.seen();
+    wanted.granted = server.credit.granted();
+    wanted.received = server.credit.received();
     const tactus_v5_Wanted probe = wanted;
-    std::span<const HostPiece> requests(host.requests);
+    std::span<const ServerPiece> requests(server.requests);
     do
     {
         std::array<tactus_v5_PieceName, kMaxRequests> names{};
         const auto part = requests.first(std::min<std::size_t>(requests.size(), kMaxRequests));
         std::ranges::transform(part, names.begin(),
-                               [](const HostPiece& piece)
+                               [](const ServerPiece& piece)
                                {
                                    return tactus_v5_PieceName{
                                        static_cast<std::uint16_t>(piece.model),
@@ -260,12 +263,12 @@ void PieceExchange::send(Host& host)
         wanted.pieces = {count, count, names.data(), false};
         if (wanted_->write(&wanted, &probe))
         {
-            host.granted_sent = wanted.granted;
+            server.granted_sent = wanted.granted;
         }
         requests = requests.subspan(part.size());
     } while (!requests.empty());
-    host.requests.clear();
-    host.last_sent = now;
+    server.requests.clear();
+    server.last_sent = now;
 }
 
 } // namespace tactus::dds

@@ -14,14 +14,14 @@
 namespace tactus::dds
 {
 
-/// Bytes before each piece in a payload: its WireKey and its length.
+/// Size of the frame before each piece in a payload: its WireKey and its length.
 inline constexpr std::size_t kFrameBytes = sizeof(WireKey) + sizeof(std::uint32_t);
 
-/// Appends one piece to a payload. No allocation while the payload's capacity suffices.
+/// Appends a framed piece to a payload. No allocation while the payload's capacity suffices.
 void append_piece(std::vector<std::byte>& payload, const WireKey& key,
                   std::span<const std::byte> bytes);
 
-/// Reads an untrusted payload, piece by piece.
+/// Reads the framed pieces of an untrusted payload, one by one.
 class PieceReader
 {
 public:
@@ -36,7 +36,7 @@ public:
     /// The next piece; none at the end or if the framing is broken.
     [[nodiscard]] std::optional<Piece> next() noexcept;
 
-    /// True if the payload did not end with a whole piece.
+    /// True if next() found a frame or piece that is cut off.
     [[nodiscard]] bool is_broken() const noexcept { return reader_.failed(); }
 
 private:

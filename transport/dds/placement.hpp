@@ -11,12 +11,12 @@ struct tactus_v5_Placement;
 namespace tactus::dds
 {
 
-/// Conversion of a pose to and from the wire, unchecked: see checked_pose().
+/// Conversion of a pose to and from the wire. Values are not checked (checked_pose()).
 [[nodiscard]] tactus_v5_Placement to_wire(const Pose& pose) noexcept;
 [[nodiscard]] Pose from_wire(const tactus_v5_Placement& wire) noexcept;
 
-/// Conversion of a material to and from the wire, unchecked: see is_sound(). A stiffness of 0 on
-/// the wire means none of its own.
+/// Conversion of a material to and from the wire. Values are not checked (is_sound()). A stiffness
+/// of 0 on the wire means the stiffness of the tool.
 void put_material(const Material& material, tactus_v5_ObjectRecord& wire) noexcept;
 [[nodiscard]] Material material_of(const tactus_v5_ObjectRecord& wire) noexcept;
 

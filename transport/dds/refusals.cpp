@@ -17,35 +17,38 @@ namespace tactus::dds
 namespace
 {
 
-/// Text of a log line; empty if the refusing code logs more.
+/// Text of the log line for a reason; empty for reasons that are logged elsewhere.
 std::string reason_of(Refused reason, std::uint32_t number)
 {
     switch (reason)
     {
     case Refused::identity:
-        return "a sample that names another host or controller than it comes from";
+        return "a sample with the identity of another server or controller";
     case Refused::object_number:
-        return fmt::format("object {}: a host has objects 0 to {}", number, kMaxObjects - 1);
+        return fmt::format("object {}: its number is not in 0 .. {}", number, kMaxObjects - 1);
     case Refused::model_number:
-        return fmt::format("model {}: a host has models 0 to {}", number, kMaxModels - 1);
+        return fmt::format("model {}: its number is not in 0 .. {}", number, kMaxModels - 1);
     case Refused::object_name:
         return fmt::format("object {}: its name is not {}", number, kNameForm);
     case Refused::object_material:
-        return fmt::format("object {}: its stiffness is not above 0, friction or damping below 0, "
-                           "or dynamic friction above static friction",
-                           number);
+        return fmt::format(
+            "object {}: its material is invalid: the stiffness must be above 0, friction, damping "
+            "and "
+            "viscosity at least 0, the dynamic friction at most the static friction, and the "
+            "texture height at most 1/32 of the texture length of 0.0001 to 1 m",
+            number);
     case Refused::object_pose:
-        return fmt::format("object {}: it stands nowhere", number);
+        return fmt::format("object {}: its pose is invalid", number);
     case Refused::model_name:
         return fmt::format("model {}: its name, or its scene's, is not {}", number, kNameForm);
     case Refused::model_room:
-        return fmt::format("model {}: there are too many on the domain", number);
+        return fmt::format("model {}: the domain has too many models", number);
     case Refused::request:
-        return "a request for a piece that there is not";
+        return "a request for a piece that does not exist";
     case Refused::telemetry:
-        return "telemetry with a name or numbers that are none, or of too many controllers";
+        return "telemetry with an invalid name or number, or of too many controllers";
     case Refused::rate:
-        return "more pieces asked for in a second than a host takes in of one process";
+        return "more pieces requested in a second than a server accepts from one process";
     case Refused::not_served:
     case Refused::controller:
         break;
@@ -84,7 +87,7 @@ void Refusals::count(const ParticipantId& peer, Refused reason, std::uint32_t nu
     has_news_ = true;
 }
 
-/// Looks up names and writes lines without the lock, for which Cyclone's threads may wait.
+/// Holds the lock neither to look up names nor to write lines, since Cyclone's threads wait for it.
 void Refusals::report(RateLimitedLog& log,
                       const std::function<std::string(const ParticipantId&)>& name_of)
 {
@@ -104,7 +107,8 @@ void Refusals::report(RateLimitedLog& log,
     }
 }
 
-/// Lines that are due, for the peers in `names`.
+/// Returns a log line for each count that reached its next power of ten, and raises that limit.
+/// `names` are those of the first participants in `peers_`; only these are searched.
 std::vector<std::string> Refusals::take_lines(std::span<const std::string> names)
 {
     std::vector<std::string> lines;
@@ -126,7 +130,7 @@ std::vector<std::string> Refusals::take_lines(std::span<const std::string> names
             {
                 reason.told_at *= 10;
             }
-            lines.push_back(fmt::format("refused of {}: {}{}", names[k], text,
+            lines.push_back(fmt::format("refused from {}: {}{}", names[k], text,
                                         count > 1 ? fmt::format(" ({} so far)", count) : ""));
         }
     }

@@ -17,34 +17,34 @@
 namespace tactus::dds
 {
 
-/// GUID of a participant: names a controller on the wire.
+/// GUID of a DDS participant; on the wire, the identity of a controller.
 using ParticipantId = std::array<std::uint8_t, 16>;
 
-/// Reason why a sample of another program on the domain was refused. Refused poses of moving
-/// objects are counted at the object (PoseRefusal).
+/// Reasons to refuse a sample of another program. Refused poses of known objects are counted in
+/// PoseCounts instead.
 enum class Refused : std::uint8_t
 {
-    identity,      ///< Sample that names another server or controller than its sender.
-    object_number, ///< Object number from kMaxObjects on.
-    model_number,  ///< Model number from kMaxModels on.
+    identity,      ///< Sample of a server or controller other than its sender.
+    object_number, ///< Object number of kMaxObjects or above.
+    model_number,  ///< Model number of kMaxModels or above.
     object_name,
     object_material,
     object_pose, ///< Pose of a new object.
-    not_served,  ///< Object of a model that its server lacks.
+    not_served,  ///< Object of a model that its server does not serve.
     model_name,  ///< Invalid name of a model or of its scene.
-    model_room,  ///< More models than are remembered.
+    model_room,  ///< Offer of a model for which the catalogue has no room.
     controller,  ///< Invalid name of a controller, or too many controllers.
     request,     ///< Request for a piece that does not exist.
     /// Telemetry or refinement state with invalid names or numbers, or of too many controllers.
     telemetry,
-    rate, ///< More pieces requested in a second than a server accepts.
+    rate, ///< More pieces requested in a second than a server accepts from one process.
 };
 inline constexpr std::size_t kRefusedKinds = 13;
 
 /// Refusals of one participant.
 struct PeerRefusals
 {
-    /// GUID; zeros: several participants, or writers that were gone when their samples arrived.
+    /// GUID; zeros for all participants beyond the limit, and for writers that were already gone.
     ParticipantId id{};
     std::string name;                                  ///< Program, process and machine.
     std::array<std::uint64_t, kRefusedKinds> counts{}; ///< Counts in the order of Refused.
@@ -57,18 +57,18 @@ struct PeerRefusals
 class Refusals
 {
 public:
-    /// Maximum number of participants counted separately; later ones are counted together.
+    /// Maximum number of entries in list(). The last one counts all further participants together.
     static constexpr std::size_t kMaxPeers = 64;
 
     /// Counts one refusal. `number` is that of the object or model, for the log line.
     void count(const ParticipantId& peer, Refused reason, std::uint32_t number = 0);
 
-    /// Logs, for each participant and reason, the first refusal, the tenth, the hundredth, and so
-    /// on. Refusals that are logged where they happen have no line here.
+    /// Logs the first, tenth, hundredth, ... refusal of each participant and reason. Reasons
+    /// not_served and controller are logged elsewhere.
     void report(RateLimitedLog& log,
                 const std::function<std::string(const ParticipantId&)>& name_of);
 
-    /// Participants in the order of their first refusal.
+    /// One entry for each participant, in the order of the first refusals.
     [[nodiscard]] std::vector<PeerRefusals> list() const;
 
 private:

@@ -14,22 +14,22 @@
 namespace tactus::dds
 {
 
-/// A piece of one of a server's models.
-struct HostPiece
+/// A piece of one of the models of a server.
+struct ServerPiece
 {
     std::uint32_t model{0}; ///< Number of the model on the server.
     ContentKey key;
 
-    constexpr bool operator==(const HostPiece&) const noexcept = default;
+    constexpr bool operator==(const ServerPiece&) const noexcept = default;
 };
 
-/// Requests of one controller that wait on the server: newest generation first, within it in the
-/// order of request; each piece once. When full, the last ones are dropped: the oldest generation.
+/// Waiting requests of one controller, on the server: newest generation first, then in the order of
+/// arrival; each piece once. If the queue is full, its last request is dropped.
 ///
-/// A table of fixed size, a list through it in that order, and a hash of the pieces with a random
-/// factor, so that no controller can choose pieces that collide. The cost of adding and taking does
-/// not depend on the number waiting; a piece of another generation than the one before it costs a
-/// walk over the newer ones.
+/// A table of fixed size with a list in that order and a hash table of the pieces. The hash has a
+/// random factor, so that no controller can choose pieces that collide. Cost does not depend on the
+/// number of requests, except for a piece of another generation than the piece added before: its
+/// place is searched from the front.
 class RequestQueue
 {
 public:
@@ -50,8 +50,8 @@ public:
         }
     }
 
-    /// Adds a request. Generations count up and may wrap.
-    void add(const HostPiece& piece, std::uint32_t generation)
+    /// Adds a request; moves it if the piece is known. Generations increase and may wrap.
+    void add(const ServerPiece& piece, std::uint32_t generation)
     {
         if (const Index known = find(piece); known != kNone)
         {
@@ -74,7 +74,7 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] std::uint64_t forgotten() const noexcept { return forgotten_; }
     /// Request of highest priority; the queue must not be empty.
-    [[nodiscard]] const HostPiece& front() const noexcept
+    [[nodiscard]] const ServerPiece& front() const noexcept
     {
         return slots_[slots_[end_].next].piece;
     }
@@ -86,14 +86,14 @@ private:
 
     struct Slot
     {
-        HostPiece piece;
+        ServerPiece piece;
         std::uint32_t generation{0};
-        Index next{0}; ///< Next slot in the order of the queue, or in that of the free slots.
+        Index next{0}; ///< Next slot in the queue, or in the list of free slots.
         Index previous{0};
-        Index chained{kNone}; ///< Next slot of its hash chain.
+        Index chained{kNone}; ///< Next slot with the same hash.
     };
 
-    [[nodiscard]] Index& chain_of(const HostPiece& piece) noexcept
+    [[nodiscard]] Index& chain_of(const ServerPiece& piece) noexcept
     {
         const std::uint64_t name =
             (std::uint64_t{piece.model} << 40U) ^
@@ -102,7 +102,7 @@ private:
                        (64U - static_cast<unsigned>(std::countr_zero(chains_.size())))];
     }
 
-    [[nodiscard]] Index find(const HostPiece& piece) noexcept
+    [[nodiscard]] Index find(const ServerPiece& piece) noexcept
     {
         Index slot = chain_of(piece);
         while (slot != kNone && slots_[slot].piece != piece)
@@ -112,8 +112,8 @@ private:
         return slot;
     }
 
-    /// Last slot of the same or a newer generation; `end_`, which is before the first, if there is
-    /// none.
+    /// Last slot of the same or a newer generation; `end_`, which precedes the first slot, if there
+    /// is none.
     [[nodiscard]] Index place_before(std::uint32_t generation) const noexcept
     {
         const auto is_older = [&](Index slot) {
@@ -123,7 +123,7 @@ private:
         Index before = end_;
         if (last_ != end_ && slots_[last_].generation == generation)
         {
-            before = last_; // The common case.
+            before = last_; // Usual case.
         }
         while (!is_older(slots_[before].next))
         {
@@ -132,7 +132,7 @@ private:
         return before;
     }
 
-    void put_after(Index before, const HostPiece& piece, std::uint32_t generation) noexcept
+    void put_after(Index before, const ServerPiece& piece, std::uint32_t generation) noexcept
     {
         const Index slot = free_;
         free_ = slots_[slot].next;
@@ -161,12 +161,12 @@ private:
         --size_;
     }
 
-    std::vector<Slot> slots_; ///< Slots; the additional last one is the list's end.
+    std::vector<Slot> slots_; ///< Slots of requests, then one slot for the list's end.
     std::vector<Index> chains_;
     std::uint64_t factor_{1};
     Index end_;
     Index free_{kNone};
-    Index last_{end_}; ///< Slot added last; `end_` once it was taken out.
+    Index last_{end_}; ///< Slot added last; `end_` if it has been taken out.
     std::size_t size_{0};
     std::uint64_t forgotten_{0};
 };

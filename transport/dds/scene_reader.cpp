@@ -22,16 +22,17 @@ namespace tactus::dds
 namespace
 {
 
-/// Samples taken in one poll; the rest waits for the next.
+/// Maximum numbers of samples taken in one poll; further ones wait in the readers.
 constexpr std::size_t kRecordsPerPoll = 1'024;
 constexpr std::size_t kMotionPerPoll = 128;
-/// Time after which the objects of a server count as complete, even if it announced more.
+/// Time after the admission at which a server's objects count as complete, even if some are
+/// missing.
 constexpr auto kCompleteMax = std::chrono::seconds(2);
-/// Time in which a server announces an object's model: it does so every second.
+/// Time in which a server must announce the model of an object; models are announced every second.
 constexpr auto kServedMax = std::chrono::seconds(2);
-/// Delay after which a server's count of objects includes its earlier changes.
+/// Time after which the number of objects that a server sends includes its earlier removals.
 constexpr auto kDispute = std::chrono::milliseconds(40);
-/// Silence after which a server is asked for another writer of motion; it sends every 20 ms.
+/// Time without motion, sent every 20 ms, after which the server is asked for another writer.
 constexpr auto kMotionLost = std::chrono::milliseconds(300);
 
 } // namespace
@@ -41,118 +42,117 @@ std::uint64_t PoseCounts::refused_in_all() const noexcept
     return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
 }
 
-void SceneReader::poll(std::span<const std::uint64_t> hosts, const Take& take)
+void SceneReader::poll(std::span<const std::uint64_t> servers, const Take& take)
 {
-    for (auto host = hosts_.begin(); host != hosts_.end();)
+    for (auto server = servers_.begin(); server != servers_.end();)
     {
-        if (std::ranges::find(hosts, host->first) != hosts.end())
+        if (std::ranges::find(servers, server->first) != servers.end())
         {
-            ++host;
+            ++server;
             continue;
         }
-        while (!host->second.objects.empty())
+        while (!server->second.objects.empty())
         {
-            remove(host->second, host->second.objects.begin()->first, take);
+            remove(server->second, server->second.objects.begin()->first, take);
         }
-        exchange_.leave_objects(host->first);
-        host = hosts_.erase(host);
+        exchange_.leave_objects(server->first);
+        server = servers_.erase(server);
     }
-    for (const std::uint64_t epoch : hosts)
+    for (const std::uint64_t epoch : servers)
     {
-        Host& host = hosts_[epoch];
-        watch(epoch, host);
-        if (!host.motion.is_valid())
+        Server& server = servers_[epoch];
+        watch(epoch, server);
+        if (!server.motion.is_valid())
         {
-            join(epoch, host);
+            join(epoch, server);
             continue;
         }
-        take_records(epoch, host, take);
-        take_motion(epoch, host, take);
-        look_at_strangers(epoch, host, take);
-        if (!host.is_complete && Clock::now() - host.since > kCompleteMax)
+        take_records(epoch, server, take);
+        take_motion(epoch, server, take);
+        look_at_strangers(epoch, server, take);
+        if (!server.is_complete && Clock::now() - server.since > kCompleteMax)
         {
-            host.is_complete = true; // Complete as far as can be known.
+            server.is_complete = true; // The missing objects may never arrive.
         }
-        if (host.is_complete)
+        if (server.is_complete)
         {
-            drop_unconfirmed(host, take);
-            exchange_.tell_objects_are_here(epoch, host.objects.empty() ||
-                                                       Clock::now() - host.heard < kMotionLost);
+            drop_unconfirmed(server, take);
+            exchange_.tell_objects_are_here(epoch, server.objects.empty() ||
+                                                       Clock::now() - server.heard < kMotionLost);
         }
     }
 }
 
-bool SceneReader::was_heard(std::uint64_t host_epoch) const
+bool SceneReader::was_heard(std::uint64_t server_epoch) const
 {
-    const auto host = hosts_.find(host_epoch);
-    return host != hosts_.end() && host->second.was_heard;
+    const auto server = servers_.find(server_epoch);
+    return server != servers_.end() && server->second.was_heard;
 }
 
-bool SceneReader::is_complete(std::uint64_t host_epoch) const
+bool SceneReader::is_complete(std::uint64_t server_epoch) const
 {
-    const auto host = hosts_.find(host_epoch);
-    return host != hosts_.end() && host->second.is_complete;
+    const auto server = servers_.find(server_epoch);
+    return server != servers_.end() && server->second.is_complete;
 }
 
-const std::map<std::uint32_t, SeenObject>& SceneReader::objects(std::uint64_t host_epoch) const
+const std::map<std::uint32_t, SeenObject>& SceneReader::objects(std::uint64_t server_epoch) const
 {
     static const std::map<std::uint32_t, SeenObject> none;
-    const auto host = hosts_.find(host_epoch);
-    return host == hosts_.end() ? none : host->second.objects;
+    const auto server = servers_.find(server_epoch);
+    return server == servers_.end() ? none : server->second.objects;
 }
 
-void SceneReader::join(std::uint64_t epoch, Host& host)
+void SceneReader::join(std::uint64_t epoch, Server& server)
 {
     exchange_.ask_for_objects(epoch);
     if (!exchange_.is_let_in(epoch))
     {
         return;
     }
-    auto records = make_reader(domain_, Topic::objects, host_partition(epoch));
-    auto motion = make_reader(domain_, Topic::motion, host_partition(epoch));
+    auto records = make_reader(domain_, Topic::objects, server_partition(epoch));
+    auto motion = make_reader(domain_, Topic::motion, server_partition(epoch));
     if (!records || !motion)
     {
         fault_ = records ? motion.error().text : records.error().text;
         return;
     }
-    host.records = std::move(records).value();
-    host.motion = std::move(motion).value();
-    host.since = host.heard = Clock::now();
+    server.records = std::move(records).value();
+    server.motion = std::move(motion).value();
+    server.since = server.heard = Clock::now();
 }
 
-/// Replaces the readers when a server returns: the old ones do not report its removals in the
-/// meantime.
-void SceneReader::watch(std::uint64_t epoch, Host& host)
+/// Replaces the readers when a server returns, since the old ones miss removals during its absence.
+void SceneReader::watch(std::uint64_t epoch, Server& server)
 {
-    const bool was_gone = std::exchange(host.is_gone, !exchange_.catalogue().has_host(epoch));
-    if (!was_gone || host.is_gone || !host.motion.is_valid())
+    const bool was_gone = std::exchange(server.is_gone, !exchange_.catalogue().has_server(epoch));
+    if (!was_gone || server.is_gone || !server.motion.is_valid())
     {
         return;
     }
-    host.records = {};
-    host.motion = {};
-    host.motion_writer = 0;
-    host.disputed.clear();
-    host.strangers.clear();
-    host.is_complete = false;
-    for (const auto& [number, object] : host.objects)
+    server.records = {};
+    server.motion = {};
+    server.motion_writer = 0;
+    server.disputed.clear();
+    server.strangers.clear();
+    server.is_complete = false;
+    for (const auto& [number, object] : server.objects)
     {
-        host.unconfirmed.insert(number);
+        server.unconfirmed.insert(number);
     }
     exchange_.leave_objects(epoch);
 }
 
-void SceneReader::drop_unconfirmed(Host& host, const Take& take)
+void SceneReader::drop_unconfirmed(Server& server, const Take& take)
 {
-    for (const std::uint32_t number : std::exchange(host.unconfirmed, {}))
+    for (const std::uint32_t number : std::exchange(server.unconfirmed, {}))
     {
-        remove(host, number, take);
+        remove(server, number, take);
     }
 }
 
-void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take)
+void SceneReader::take_records(std::uint64_t epoch, Server& server, const Take& take)
 {
-    std::map<std::uint64_t, bool> writers; // Result by writer, to query each one once a call.
+    std::map<std::uint64_t, bool> writers; // Cache of is_writing() for this call.
     const auto is_there = [&](std::uint64_t writer)
     {
         const auto [known, is_new] = writers.try_emplace(writer, false);
@@ -160,33 +160,33 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
         return known->second;
     };
     take_each<tactus_v5_ObjectRecord>(
-        host.records.handle, kRecordsPerPoll,
+        server.records.handle, kRecordsPerPoll,
         [&](const tactus_v5_ObjectRecord& record, const dds_sample_info_t& info)
         {
             if (info.valid_data)
             {
-                if (const auto refused = take_record(host, record, take))
+                if (const auto refused = take_record(server, record, take))
                 {
                     domain_.participants().refuse(info.publication_handle, *refused, record.object);
                 }
             }
             if (info.instance_state == DDS_ALIVE_INSTANCE_STATE)
             {
-                host.disputed.erase(record.object);
+                server.disputed.erase(record.object);
             }
             else if (!tells_end(info))
             {
-                host.disputed.emplace(record.object, Clock::now());
+                server.disputed.emplace(record.object, Clock::now());
             }
-            else if (domain_.participants().is_host(info.publication_handle, epoch))
+            else if (domain_.participants().is_server(info.publication_handle, epoch))
             {
                 if (!is_there(info.publication_handle))
                 {
-                    return; // The writer is gone, not the object.
+                    return; // The server left; its objects stay.
                 }
-                host.disputed.erase(record.object);
-                host.strangers.erase(record.object);
-                remove(host, record.object, take);
+                server.disputed.erase(record.object);
+                server.strangers.erase(record.object);
+                remove(server, record.object, take);
             }
             else
             {
@@ -195,12 +195,12 @@ void SceneReader::take_records(std::uint64_t epoch, Host& host, const Take& take
         });
 }
 
-/// Processes one record; returns the reason of a refusal, or none.
-std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v5_ObjectRecord& record,
-                                                const Take& take)
+/// Processes one record; returns a reason if it is refused.
+std::optional<Refused>
+SceneReader::take_record(Server& server, const tactus_v5_ObjectRecord& record, const Take& take)
 {
     SeenObject news;
-    news.host_epoch = record.host_epoch;
+    news.server_epoch = record.server_epoch;
     news.number = record.object;
     news.generation = record.generation;
     news.shown.name = text_of(record.name);
@@ -214,9 +214,9 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v5_Obje
     {
         return Refused::object_material;
     }
-    host.unconfirmed.erase(record.object);
-    const auto known = host.objects.find(record.object);
-    if (known != host.objects.end() && known->second.generation == record.generation)
+    server.unconfirmed.erase(record.object);
+    const auto known = server.objects.find(record.object);
+    if (known != server.objects.end() && known->second.generation == record.generation)
     {
         if (record.serial > known->second.serial &&
             try_move(known->second, record.serial, record.pose))
@@ -234,101 +234,100 @@ std::optional<Refused> SceneReader::take_record(Host& host, const tactus_v5_Obje
     {
         return Refused::object_pose;
     }
-    remove(host, record.object, take);
-    if (exchange_.catalogue().find(news.shown.model, news.host_epoch) == nullptr)
+    remove(server, record.object, take);
+    if (exchange_.catalogue().find(news.shown.model, news.server_epoch) == nullptr)
     {
-        Stranger& stranger = host.strangers[record.object];
+        Stranger& stranger = server.strangers[record.object];
         const bool is_new = stranger.object.generation != news.generation;
         stranger = is_new ? Stranger{news, Clock::now()}
                           : Stranger{news, stranger.since, stranger.is_told};
         return is_new ? std::optional(Refused::not_served) : std::nullopt;
     }
-    host.strangers.erase(record.object);
-    take(SceneNews::comes, host.objects.emplace(record.object, std::move(news)).first->second);
+    server.strangers.erase(record.object);
+    take(SceneNews::comes, server.objects.emplace(record.object, std::move(news)).first->second);
     return std::nullopt;
 }
 
-/// Restarts the serial numbers for another writer: a packet in the last one's name may have raised
-/// them.
-void SceneReader::begin_with(Host& host, std::uint64_t writer)
+/// Resets the serial numbers if the writer changed, since a forged packet of the last writer may
+/// have raised them.
+void SceneReader::begin_with(Server& server, std::uint64_t writer)
 {
-    if (host.motion_writer == 0 || host.motion_writer == writer)
+    if (server.motion_writer == 0 || server.motion_writer == writer)
     {
         return;
     }
-    host.motion_serial = 0;
-    for (auto& [number, object] : host.objects)
+    server.motion_serial = 0;
+    for (auto& [number, object] : server.objects)
     {
         object.serial = 0;
     }
 }
 
-/// Records that motion was heard. A packet in a writer's name with a much later sample number makes
-/// Cyclone drop all others of that writer.
-void SceneReader::hear(std::uint64_t epoch, Host& host, std::uint64_t writer)
+/// Records new motion, and logs if it was lost before. A packet with a much later sample number in
+/// a writer's name makes Cyclone drop the writer's other samples.
+void SceneReader::hear(std::uint64_t epoch, Server& server, std::uint64_t writer)
 {
     const auto now = Clock::now();
-    const auto silent = std::chrono::duration_cast<std::chrono::milliseconds>(now - host.heard);
-    const bool is_other = host.motion_writer != 0 && host.motion_writer != writer;
+    const auto silent = std::chrono::duration_cast<std::chrono::milliseconds>(now - server.heard);
+    const bool is_other = server.motion_writer != 0 && server.motion_writer != writer;
     if (is_other && silent >= kMotionLost)
     {
         ++motion_regained_;
-        log_.write(fmt::format("motion of host {:016x} was lost for {} ms though it was there, by "
-                               "a forged packet or a long stall; another writer tells of it",
+        log_.write(fmt::format("motion of server {:016x} was lost for {} ms by a forged packet or "
+                               "a long stall; another writer sends it now",
                                epoch, silent.count()));
     }
-    host.heard = now;
-    host.motion_writer = writer;
-    host.was_heard = true;
+    server.heard = now;
+    server.motion_writer = writer;
+    server.was_heard = true;
 }
 
-void SceneReader::take_motion(std::uint64_t epoch, Host& host, const Take& take)
+void SceneReader::take_motion(std::uint64_t epoch, Server& server, const Take& take)
 {
-    host.was_heard = false;
+    server.was_heard = false;
     take_each<tactus_v5_Motion>(
-        host.motion.handle, kMotionPerPoll,
+        server.motion.handle, kMotionPerPoll,
         [&](const tactus_v5_Motion& motion, const dds_sample_info_t& info)
         {
             if (!info.valid_data)
             {
                 return;
             }
-            begin_with(host, info.publication_handle);
-            bool is_news = motion.serial > host.motion_serial;
+            begin_with(server, info.publication_handle);
+            bool is_news = motion.serial > server.motion_serial;
             for (std::uint32_t i = 0; i < motion.moved._length; ++i)
             {
                 const tactus_v5_MovedObject& moved = motion.moved._buffer[i];
-                const auto known = host.objects.find(moved.object);
-                if (known == host.objects.end() || known->second.generation != moved.generation)
+                const auto known = server.objects.find(moved.object);
+                if (known == server.objects.end() || known->second.generation != moved.generation)
                 {
-                    // The object's record is still in transit, or the object is gone or a stranger.
+                    // The object has no record yet, was removed or replaced, or is a stranger.
                     continue;
                 }
                 SeenObject& object = known->second;
                 is_news = is_news && motion.serial > object.serial;
                 if (try_move(object, motion.serial, moved.pose))
                 {
-                    object.host_time_ns = motion.host_time_ns;
+                    object.server_time_ns = motion.server_time_ns;
                     take(SceneNews::moves, object);
                 }
             }
-            // Samples that are ignored as old count as silence: eventually another writer is
-            // requested.
+            // Old samples count as silence, so that another writer is requested in the end.
             if (is_news)
             {
-                host.motion_serial = motion.serial;
-                hear(epoch, host, info.publication_handle);
+                server.motion_serial = motion.serial;
+                hear(epoch, server, info.publication_handle);
             }
-            settle_disputed(host, motion.objects, take);
-            host.is_complete = host.is_complete || host.known() >= motion.objects;
+            settle_disputed(server, motion.objects, take);
+            server.is_complete = server.is_complete || server.known() >= motion.objects;
         });
 }
 
-/// Removes disputed objects if the server's count of objects confirms it.
-void SceneReader::settle_disputed(Host& host, std::uint32_t objects, const Take& take)
+/// Removes disputed objects if more objects are known than the server's count `objects`.
+void SceneReader::settle_disputed(Server& server, std::uint32_t objects, const Take& take)
 {
     const auto now = Clock::now();
-    for (auto at = host.disputed.begin(); at != host.disputed.end();)
+    for (auto at = server.disputed.begin(); at != server.disputed.end();)
     {
         const auto [number, since] = *at;
         if (now - since < kDispute)
@@ -336,37 +335,36 @@ void SceneReader::settle_disputed(Host& host, std::uint32_t objects, const Take&
             ++at;
             continue;
         }
-        at = host.disputed.erase(at);
-        if (host.objects.size() + host.strangers.size() > objects)
+        at = server.disputed.erase(at);
+        if (server.objects.size() + server.strangers.size() > objects)
         {
-            host.strangers.erase(number);
-            remove(host, number, take);
+            server.strangers.erase(number);
+            remove(server, number, take);
         }
     }
 }
 
-/// Adds strangers whose model has become available, and logs each of the others once.
-void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take& take)
+/// Adds strangers whose model is now served, and logs each other one once after kServedMax.
+void SceneReader::look_at_strangers(std::uint64_t epoch, Server& server, const Take& take)
 {
     const auto now = Clock::now();
     const Catalogue& catalogue = exchange_.catalogue();
     const bool has_news =
-        std::exchange(host.seen_catalogue, catalogue.version()) != catalogue.version();
-    for (auto at = host.strangers.begin(); at != host.strangers.end();)
+        std::exchange(server.seen_catalogue, catalogue.version()) != catalogue.version();
+    for (auto at = server.strangers.begin(); at != server.strangers.end();)
     {
         Stranger& stranger = at->second;
         if (has_news && catalogue.find(stranger.object.shown.model, epoch) != nullptr)
         {
             take(SceneNews::comes,
-                 host.objects.emplace(at->first, std::move(stranger.object)).first->second);
-            at = host.strangers.erase(at);
+                 server.objects.emplace(at->first, std::move(stranger.object)).first->second);
+            at = server.strangers.erase(at);
             continue;
         }
         if (!stranger.is_told && now - stranger.since > kServedMax)
         {
             stranger.is_told = true;
-            log_.write(fmt::format("object '{}' is refused: it shows model {}, which its host "
-                                   "doesn't serve",
+            log_.write(fmt::format("object '{}' is refused: its server doesn't serve its model, {}",
                                    stranger.object.shown.name,
                                    hash_text(stranger.object.shown.model)));
         }
@@ -374,7 +372,7 @@ void SceneReader::look_at_strangers(std::uint64_t epoch, Host& host, const Take&
     }
 }
 
-/// Applies a pose; true if accepted. Counts it either way.
+/// Checks a pose and applies it if valid and newer; counts it in any case. True if applied.
 bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactus_v5_Placement& to)
 {
     const auto refuse = [&](PoseRefusal refusal)
@@ -397,14 +395,14 @@ bool SceneReader::try_move(SeenObject& object, std::uint64_t serial, const tactu
     return true;
 }
 
-void SceneReader::remove(Host& host, std::uint32_t number, const Take& take)
+void SceneReader::remove(Server& server, std::uint32_t number, const Take& take)
 {
-    const auto known = host.objects.find(number);
-    host.unconfirmed.erase(number);
-    if (known != host.objects.end())
+    const auto known = server.objects.find(number);
+    server.unconfirmed.erase(number);
+    if (known != server.objects.end())
     {
         const SeenObject last = std::move(known->second);
-        host.objects.erase(known);
+        server.objects.erase(known);
         take(SceneNews::goes, last);
     }
 }

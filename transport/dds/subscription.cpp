@@ -14,7 +14,7 @@ namespace tactus::dds
 namespace
 {
 
-/// Time after which pieces count as missing; longer than the repetition of a lost datagram takes.
+/// Time after which pieces count as lost; longer than the repetition of a lost datagram.
 constexpr auto kOverdue = std::chrono::milliseconds(300);
 
 } // namespace
@@ -50,7 +50,7 @@ std::shared_ptr<void> Subscription::try_heal(Backoff::Clock::time_point now)
 {
     if (lost_ <= given_up_)
     {
-        given_up_ = lost_; // Late pieces have arrived.
+        given_up_ = lost_; // No further pieces are lost, or late ones have arrived.
         overdue_since_ = now;
         return nullptr;
     }
@@ -63,17 +63,17 @@ std::shared_ptr<void> Subscription::try_heal(Backoff::Clock::time_point now)
     return old;
 }
 
-bool Subscription::send_one(std::uint64_t host_epoch, std::span<const ModelPieces> models,
+bool Subscription::send_one(std::uint64_t server_epoch, std::span<const ModelPieces> models,
                             PieceBuffers& room, RateLimitedLog& log)
 {
     if (!has_work() || !writers_.is_matched())
     {
-        return false; // A sample written before the reader is known would be lost.
+        return false; // DDS drops samples written before the reader is known.
     }
     const std::uint64_t pieces = fill(models, room, log);
-    if (pieces == 0 || !write(host_epoch, pieces, false, room.payload))
+    if (pieces == 0 || !write(server_epoch, pieces, false, room.payload))
     {
-        return false; // The pieces count as lost: the controller requests them again.
+        return false; // The pieces are lost: the controller requests them again.
     }
     sent_ += pieces;
     pieces_sent_ += pieces;
@@ -81,17 +81,17 @@ bool Subscription::send_one(std::uint64_t host_epoch, std::span<const ModelPiece
     return true;
 }
 
-bool Subscription::let_in(std::uint64_t host_epoch)
+bool Subscription::let_in(std::uint64_t server_epoch)
 {
     std::vector<std::byte> nothing;
-    return writers_.is_matched() && write(host_epoch, 0, true, nothing);
+    return writers_.is_matched() && write(server_epoch, 0, true, nothing);
 }
 
-bool Subscription::write(std::uint64_t host_epoch, std::uint64_t pieces, bool lets_in,
+bool Subscription::write(std::uint64_t server_epoch, std::uint64_t pieces, bool lets_in,
                          std::vector<std::byte>& payload)
 {
     tactus_v5_Pieces sample = {};
-    sample.host_epoch = host_epoch;
+    sample.server_epoch = server_epoch;
     sample.sent = sent_;
     const tactus_v5_Pieces probe = sample;
     sample.sent += pieces;
@@ -108,7 +108,7 @@ std::uint64_t Subscription::fill(std::span<const ModelPieces> models, PieceBuffe
     std::uint64_t pieces = 0;
     while (!requests_.empty() && sent_ + pieces < credit_.granted)
     {
-        const HostPiece request = requests_.front();
+        const ServerPiece request = requests_.front();
         const ModelPieces& model = models[request.model];
         if (room.payload.size() + kFrameBytes + model.bytes(request.key) > kPayloadBytes)
         {

@@ -22,19 +22,19 @@
 namespace tactus::dds
 {
 
-/// Buffers shared by all subscriptions.
+/// Memory for building samples, shared by all subscriptions of a server.
 struct PieceBuffers
 {
     std::vector<std::byte> payload;
     std::vector<std::byte> piece;
 };
 
-/// One controller, on the server: its requests, its credit, and its own writers in its own
-/// partition, so that no other controller waits for it.
+/// State of one controller on the server: requests, credit, and writers in a partition of its own,
+/// so that no controller waits for another.
 class Subscription
 {
 public:
-    /// Credit in a request.
+    /// Credit as stated in a request (CreditWindow); all numbers are totals of pieces.
     struct Credit
     {
         std::uint64_t seen{0};
@@ -42,8 +42,8 @@ public:
         std::uint64_t received{0};
     };
 
-    /// Counting starts at the first request's `seen`: a controller that was thought dead and
-    /// returns continues its count.
+    /// The number of sent pieces starts at `seen` of the first request, so that a controller that
+    /// was taken for gone continues its count.
     [[nodiscard]] static Result<Subscription, Refusal> create(const Domain& domain,
                                                               const ControllerId& controller,
                                                               std::string controller_name,
@@ -52,30 +52,32 @@ public:
     [[nodiscard]] const ControllerId& controller() const noexcept { return controller_; }
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
-    /// Adds a request; the piece must exist.
-    void request(const HostPiece& piece, std::uint32_t generation)
+    /// Queues a request; the piece must exist.
+    void request(const ServerPiece& piece, std::uint32_t generation)
     {
         requests_.add(piece, generation);
     }
-    /// Updates the credit. Requests may arrive out of order, so the counts only grow. `seen` is at
-    /// most the number sent, and `granted` at most kCreditPieces more than `seen`.
+    /// Updates the credit from a request. Requests may arrive out of order, so values never
+    /// decrease. `seen` is limited to the number sent, and `granted` to kCreditPieces beyond
+    /// `seen`.
     void set_credit(const Credit& credit) noexcept;
-    /// Creates new writers if the controller reports for 300 ms that pieces never arrived: a forged
-    /// packet in a writer's name makes its readers ignore that writer. Returns the owner of the old
-    /// ones; null if nothing was done. Repetitions get rarer each time.
+    /// Replaces the writers if the controller reports for 300 ms that pieces did not arrive: a
+    /// forged packet in a writer's name makes readers ignore the writer. Returns the owner of the
+    /// old writers; null if nothing was replaced. Limited by a Backoff.
     [[nodiscard]] std::shared_ptr<void> try_heal(Backoff::Clock::time_point now);
 
-    /// True if send_one() has something to send, provided that the controller's reader is present.
+    /// True if there are requests and credit. send_one() also needs the controller's reader.
     [[nodiscard]] bool has_work() const noexcept
     {
         return !requests_.empty() && sent_ < credit_.granted;
     }
-    /// Sends one sample of as many requested pieces as credit and payload allow. A piece that
-    /// cannot be read is skipped and logged. False if nothing was sent.
-    bool send_one(std::uint64_t host_epoch, std::span<const ModelPieces> models, PieceBuffers& room,
-                  RateLimitedLog& log);
-    /// Notifies the controller that it may read the objects. False while its reader is not present.
-    bool let_in(std::uint64_t host_epoch);
+    /// Sends one sample with as many requested pieces as credit and payload allow. Unreadable
+    /// pieces are skipped and logged. False if nothing was sent.
+    bool send_one(std::uint64_t server_epoch, std::span<const ModelPieces> models,
+                  PieceBuffers& room, RateLimitedLog& log);
+    /// Tells the controller that it may read the objects. False if its reader is not present or the
+    /// write fails.
+    bool let_in(std::uint64_t server_epoch);
 
     [[nodiscard]] std::uint64_t pieces_sent() const noexcept { return pieces_sent_; }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
@@ -90,7 +92,7 @@ private:
 
     [[nodiscard]] std::uint64_t fill(std::span<const ModelPieces> models, PieceBuffers& room,
                                      RateLimitedLog& log);
-    bool write(std::uint64_t host_epoch, std::uint64_t pieces, bool lets_in,
+    bool write(std::uint64_t server_epoch, std::uint64_t pieces, bool lets_in,
                std::vector<std::byte>& payload);
 
     ControllerId controller_{};
@@ -98,8 +100,8 @@ private:
     WriterLanes writers_;
     RequestQueue requests_;
     Credit credit_;
-    std::uint64_t lost_{0};              ///< Pieces sent that did not arrive, as last reported.
-    std::uint64_t given_up_{UINT64_MAX}; ///< Lost pieces that are not healed any more.
+    std::uint64_t lost_{0};              ///< Sent pieces that did not arrive, as last reported.
+    std::uint64_t given_up_{UINT64_MAX}; ///< Value of `lost_` up to which writers are not replaced.
     Backoff::Clock::time_point overdue_since_{};
     std::uint64_t sent_{0};
     std::uint64_t pieces_sent_{0};

@@ -13,29 +13,28 @@
 namespace tactus::dds
 {
 
-/// Text of a bounded string in a sample, up to its end or its capacity. Valid as long as the
-/// sample.
+/// Text of a bounded string in a sample, valid as long as the sample.
 template <std::size_t Size>
 [[nodiscard]] std::string_view text_of(const char (&text)[Size]) noexcept // NOLINT: idlc's type.
 {
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
 }
 
-/// True if a sample reports the end of its instance; its writer is the one that ended it, if that
-/// writer is genuine. If the instance was ended before its last data were taken, these data show
-/// the end but name their own writer.
+/// True if a sample reports only the end of its instance; a genuine writer of the sample ended it.
+/// If untaken data preceded the end, they come first, with the state of the end but their own
+/// writer.
 [[nodiscard]] inline bool tells_end(const dds_sample_info_t& info) noexcept
 {
     return info.instance_state != DDS_ALIVE_INSTANCE_STATE && !info.valid_data;
 }
 
-/// Samples that take_each() takes with one call of DDS.
+/// Maximum number of samples that take_each() takes in one call of DDS.
 inline constexpr std::uint32_t kTakenAtOnce = 16;
 
-/// Takes up to `samples_max` samples and calls `visit(const Sample&, const dds_sample_info_t&)` for
-/// each. The samples are on loan from Cyclone: a buffer of ours would be silently truncated to or,
-/// with `_release` set, freed by Cyclone. A sample without valid_data has only key fields. Returns
-/// the number of samples taken.
+/// Takes up to `samples_max` samples, rounded up to kTakenAtOnce, and calls `visit(const Sample&,
+/// const dds_sample_info_t&)` for each. Samples are on loan from Cyclone, which truncates to, or
+/// with `_release` set frees, a buffer of ours. A sample without valid_data has only its key
+/// fields. Returns the number of samples taken.
 template <typename Sample, typename Visit>
 std::size_t take_each(std::int32_t reader, std::size_t samples_max, Visit&& visit)
 {

@@ -26,18 +26,17 @@ namespace
 constexpr unsigned kInContact = 1;
 constexpr unsigned kHalted = 2;
 constexpr unsigned kOverConstrained = 4;
-constexpr unsigned kHeldBack = 8;
+constexpr unsigned kDataLimited = 8;
 constexpr unsigned kHasGripper = 16;
 /// Bits of ModelTelemetry::state.
-constexpr unsigned kHostGone = 1;
+constexpr unsigned kServerGone = 1;
 constexpr unsigned kStatic = 2;
 constexpr unsigned kFollowsPoses = 4;
-/// First bit of the stage. A resident model is 0, which is also the value of senders without
+/// First bit of the stage (ModelStage). `resident` is sent as 0, the value from senders without
 /// stages.
 constexpr unsigned kStageShift = 3;
 
-/// Wire code of a stage, its distance from `resident` modulo the number of stages. The function is
-/// its own inverse.
+/// Wire code of a stage: its difference from `resident`, modulo the number of stages.
 constexpr unsigned stage_code(ModelStage stage)
 {
     return (static_cast<unsigned>(stage) + kModelStages -
@@ -67,8 +66,8 @@ tactus_v5_ToolTelemetry to_wire(const ToolTelemetry& tool)
     std::ranges::copy(tool.torque_nm, std::begin(wire.torque_nm));
     wire.state = static_cast<std::uint8_t>(
         bit_when(tool.in_contact, kInContact) | bit_when(tool.halted, kHalted) |
-        bit_when(tool.over_constrained, kOverConstrained) | bit_when(tool.data_limited, kHeldBack) |
-        bit_when(tool.has_gripper, kHasGripper));
+        bit_when(tool.over_constrained, kOverConstrained) |
+        bit_when(tool.data_limited, kDataLimited) | bit_when(tool.has_gripper, kHasGripper));
     wire.gripper_m = tool.gripper_m;
     wire.buttons = tool.buttons;
     return wire;
@@ -86,7 +85,7 @@ ToolTelemetry from_wire(const tactus_v5_ToolTelemetry& wire)
     tool.in_contact = (wire.state & kInContact) != 0;
     tool.halted = (wire.state & kHalted) != 0;
     tool.over_constrained = (wire.state & kOverConstrained) != 0;
-    tool.data_limited = (wire.state & kHeldBack) != 0;
+    tool.data_limited = (wire.state & kDataLimited) != 0;
     tool.has_gripper = (wire.state & kHasGripper) != 0;
     tool.gripper_m = wire.gripper_m;
     tool.buttons = wire.buttons;
@@ -96,7 +95,7 @@ ToolTelemetry from_wire(const tactus_v5_ToolTelemetry& wire)
 tactus_v5_PairTelemetry to_wire(const PairTelemetry& pair)
 {
     tactus_v5_PairTelemetry wire = {};
-    wire.host_epoch = pair.host_epoch;
+    wire.server_epoch = pair.server_epoch;
     wire.object = pair.object;
     wire.tool = pair.tool;
     wire.kind = static_cast<std::uint8_t>(pair.kind);
@@ -109,8 +108,9 @@ tactus_v5_PairTelemetry to_wire(const PairTelemetry& pair)
 
 PairTelemetry from_wire(const tactus_v5_PairTelemetry& wire)
 {
-    PairTelemetry pair{wire.host_epoch, wire.object,  wire.tool, static_cast<AnswerKind>(wire.kind),
-                       wire.lower_m,    wire.upper_m, {},        {}};
+    PairTelemetry pair{
+        wire.server_epoch, wire.object,  wire.tool, static_cast<AnswerKind>(wire.kind),
+        wire.lower_m,      wire.upper_m, {},        {}};
     std::ranges::copy(wire.point_m, pair.point_m.begin());
     std::ranges::copy(wire.force_n, pair.force_n.begin());
     return pair;
@@ -126,7 +126,7 @@ tactus_v5_ModelTelemetry to_wire(const ModelIdentity& identity, const ModelTelem
     std::memcpy(wire.hash, identity.hash.data(), identity.hash.size());
     wire.revision = identity.revision;
     wire.state = static_cast<std::uint8_t>(
-        bit_when(model.host_gone, kHostGone) | bit_when(model.is_static, kStatic) |
+        bit_when(model.server_gone, kServerGone) | bit_when(model.is_static, kStatic) |
         bit_when(model.follows_poses, kFollowsPoses) | stage_code(model.stage) << kStageShift);
     wire.pages = pool(model.pages);
     wire.faces = pool(model.faces);
@@ -149,7 +149,7 @@ ModelTelemetry from_wire(const tactus_v5_ModelTelemetry& wire)
     model.faces = pool(wire.faces);
     model.blocks = pool(wire.blocks);
     model.nodes = pool(wire.nodes);
-    model.host_gone = (wire.state & kHostGone) != 0;
+    model.server_gone = (wire.state & kServerGone) != 0;
     model.is_static = (wire.state & kStatic) != 0;
     model.follows_poses = (wire.state & kFollowsPoses) != 0;
     model.stage = stage_of(wire.state >> kStageShift);
@@ -172,7 +172,7 @@ bool is_sound(const ToolTelemetry& tool)
            all_finite(tool.torque_nm) && std::isfinite(tool.gripper_m);
 }
 
-/// The upper bound of an object is infinite while nothing is known.
+/// True if the values of a pair are valid; upper_m may be infinite.
 bool is_sound(const PairTelemetry& pair, std::uint32_t tools)
 {
     return pair.tool < tools && pair.kind <= AnswerKind::within_tolerance &&
@@ -205,7 +205,7 @@ void copy_counts(const From& from, To& to)
     to.faults_seen = from.faults_seen;
 }
 
-/// None if a name is invalid, a number impossible, or a count too large.
+/// Telemetry in a sample; none if a name is invalid, a number impossible, or a count too large.
 std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
 {
     WatchedController news;

@@ -17,20 +17,20 @@
 namespace tactus::dds
 {
 
-/// Maximum number of controllers of one reader; samples of further ones are ignored.
+/// Maximum number of controllers of one TelemetryReader; samples of others are refused.
 inline constexpr std::size_t kMaxWatched = 256;
 
 /// Publishes a controller's telemetry. One thread, the transport thread.
 class TelemetryWriter
 {
 public:
-    /// `domain` must outlive the writer. `controller_name` is valid and `models`, in the order of
-    /// Telemetry::models, are at most kMaxShownModels (both asserted).
+    /// `domain` must outlive the writer. `controller_name` must be valid, and `models` name the
+    /// models of Telemetry::models, in order and at most kMaxShownModels (both asserted).
     [[nodiscard]] static Result<std::unique_ptr<TelemetryWriter>, Refusal>
     create(const Domain& domain, std::string controller_name, std::vector<ModelIdentity> models);
 
-    /// Sends a sample to all readers; never waits. `telemetry.model_count` is the number of models;
-    /// tools and pairs are within their arrays (asserted).
+    /// Sends a sample to all readers; never waits. `telemetry.model_count` must equal the number of
+    /// models, and its counts of tools and pairs must fit their arrays (asserted).
     void write(const Telemetry& telemetry);
 
     /// Number of samples sent.
@@ -47,16 +47,16 @@ private:
     std::uint64_t sent_{0};
 };
 
-/// Newest telemetry of a controller.
+/// Newest telemetry of one controller.
 struct WatchedController
 {
     ControllerId id{};
-    std::string name; ///< Name; valid.
+    std::string name; ///< Valid name of the controller.
     std::uint64_t serial{0};
-    std::vector<ModelIdentity> models; ///< Models in the order of Telemetry::models.
+    std::vector<ModelIdentity> models; ///< Identities of Telemetry::models, in order.
     Telemetry telemetry;
-    std::uint64_t writer{0}; ///< Handle of the last sample's writer.
-    /// True if a program, perhaps another one, ended this controller's instance.
+    std::uint64_t writer{0}; ///< DDS handle of the writer of the last sample.
+    /// True if any program ended this controller's instance in DDS; poll() then checks its writer.
     bool is_disputed{false};
 };
 
@@ -68,8 +68,8 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<TelemetryReader>, Refusal>
     create(const Domain& domain);
 
-    /// Takes new samples, and removes controllers that left or fell silent (500 ms). Bounded, never
-    /// waits.
+    /// Takes new samples, and removes controllers that left or were silent for 500 ms. Bounded,
+    /// never waits.
     void poll();
 
     /// Controllers in the order of discovery, at most kMaxWatched. Valid until the next poll().
@@ -77,7 +77,7 @@ public:
     {
         return controllers_;
     }
-    /// Number of samples refused: invalid names, numbers that are not finite, or controllers beyond
+    /// Number of refused samples: invalid names, numbers that are not finite, or controllers beyond
     /// kMaxWatched.
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 

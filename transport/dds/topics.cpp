@@ -22,14 +22,13 @@ namespace tactus::dds
 namespace
 {
 
-/// Longest wait of a writer's call for room.
+/// Longest wait of a write for room in the writer.
 constexpr std::int64_t kBlockingMax = DDS_MSECS(5);
-/// Silence after which a participant is gone: for the catalogue (servers) and requests
-/// (controllers).
+/// Silence after which a writer counts as gone (DDS liveliness), for topics with has_liveliness.
 constexpr std::int64_t kLiveliness = DDS_MSECS(500);
 
-// Bounds of transport/idl/tactus.idl. If a constant on the right grows, the wire changes: raise the
-// bound there and the protocol's version.
+// Each bound of transport/idl/tactus.idl must equal its constant. If a constant changes, change the
+// bound, and raise the version of the protocol.
 static_assert(tactus_v5_max_name_bytes == kMaxNameBytes);
 static_assert(tactus_v5_max_tools == kMaxTools);
 static_assert(tactus_v5_max_models == kMaxShownModels);
@@ -54,8 +53,8 @@ struct TopicTraits
     dds_topic_filter_sample_sampleinfo_arg_fn is_honest;
     bool is_kept_for_late_joiners;
     bool has_liveliness;
-    bool is_best_effort; ///< Only the newest sample counts: a lost one is not sent again.
-    std::int32_t depth;  ///< Samples per instance.
+    bool is_best_effort; ///< True if a lost sample is not sent again.
+    std::int32_t depth;  ///< Samples kept for each instance.
 };
 
 Participants& participants_of(void* context)
@@ -69,11 +68,11 @@ bool refuse(const dds_sample_info_t* info, void* context, Refused reason, std::u
     return false;
 }
 
-/// True if a sample of a server comes from that server.
+/// True if the server that a sample names has sent it; otherwise refuses it.
 template <typename Sample>
-bool is_of_its_host(const Sample& sample, const dds_sample_info_t* info, void* context)
+bool is_of_its_server(const Sample& sample, const dds_sample_info_t* info, void* context)
 {
-    return participants_of(context).is_host(info->publication_handle, sample.host_epoch) ||
+    return participants_of(context).is_server(info->publication_handle, sample.server_epoch) ||
            refuse(info, context, Refused::identity);
 }
 
@@ -89,34 +88,34 @@ bool is_of_its_controller(const Sample& sample, const dds_sample_info_t* info, v
 bool is_honest_entry(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& entry = *static_cast<const tactus_v5_CatalogueEntry*>(sample);
-    return is_of_its_host(entry, info, context) &&
+    return is_of_its_server(entry, info, context) &&
            (entry.model < kMaxModels || refuse(info, context, Refused::model_number, entry.model));
 }
 
 bool is_honest_record(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& record = *static_cast<const tactus_v5_ObjectRecord*>(sample);
-    return is_of_its_host(record, info, context) &&
+    return is_of_its_server(record, info, context) &&
            (record.object < kMaxObjects ||
             refuse(info, context, Refused::object_number, record.object));
 }
 
 bool is_honest_motion(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    return is_of_its_host(*static_cast<const tactus_v5_Motion*>(sample), info, context);
+    return is_of_its_server(*static_cast<const tactus_v5_Motion*>(sample), info, context);
 }
 
-/// Drops requests to other servers as well, so they take no room.
+/// Accepts only requests to this process's own server; others would take room in the reader.
 bool is_honest_request(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& wanted = *static_cast<const tactus_v5_Wanted*>(sample);
-    return wanted.host_epoch == participants_of(context).own_epoch() &&
+    return wanted.server_epoch == participants_of(context).own_epoch() &&
            is_of_its_controller(wanted, info, context);
 }
 
 bool is_honest_pieces(const void* sample, const dds_sample_info_t* info, void* context)
 {
-    return is_of_its_host(*static_cast<const tactus_v5_Pieces*>(sample), info, context);
+    return is_of_its_server(*static_cast<const tactus_v5_Pieces*>(sample), info, context);
 }
 
 bool is_honest_telemetry(const void* sample, const dds_sample_info_t* info, void* context)
@@ -132,12 +131,11 @@ bool is_honest_refinement_state(const void* sample, const dds_sample_info_t* inf
 
 const TopicTraits& traits_of(Topic topic)
 {
-    // The depths of requests and pieces are rarely reached: requests are few and of bounded kinds,
-    // pieces are limited by credit. Only the depth bounds the samples that one stuck writer of
-    // several holds back while the counts of the others go on; a sample pushed out of it is
-    // requested again. All topics are keep-last, so that no writer waits for a reader. Readers have
-    // no other limits, since a full reader would block all reception of its process; the filters
-    // bound them.
+    // All topics are keep-last, so that no writer waits for a reader. The depths of `wanted` and
+    // `chunks` are rarely reached, since requests are few and credit limits pieces. They bound the
+    // samples that one stuck writer of several holds back; dropped pieces are requested again.
+    // Readers have no other limits, since a full reader would block all reception of its process;
+    // the filters bound their instances.
     static const std::array<TopicTraits, 7> traits{{
         {"tactus/v5/catalogue", &tactus_v5_CatalogueEntry_desc, is_honest_entry, true, true, false,
          1},
@@ -201,7 +199,7 @@ Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
                                       const std::string& partition)
 {
     const TopicTraits& traits = traits_of(topic);
-    const Entity type(make_topic(domain, traits)); // The writer keeps it in use.
+    const Entity type(make_topic(domain, traits)); // DDS keeps the topic as long as the writer.
     if (!type.is_valid())
     {
         return refused(traits, type.get());
@@ -226,7 +224,8 @@ Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
                                       const std::string& partition)
 {
     const TopicTraits& traits = traits_of(topic);
-    const Entity type(make_topic(domain, traits)); // The filter belongs to this reader alone.
+    // A topic of its own, since the filter applies to this reader only.
+    const Entity type(make_topic(domain, traits));
     if (!type.is_valid())
     {
         return refused(traits, type.get());
@@ -252,9 +251,9 @@ Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
     return reader;
 }
 
-std::string host_partition(std::uint64_t host_epoch)
+std::string server_partition(std::uint64_t server_epoch)
 {
-    return fmt::format("host.{:016x}", host_epoch);
+    return fmt::format("server.{:016x}", server_epoch);
 }
 
 std::string controller_partition(const std::string& name, const ControllerId& id)

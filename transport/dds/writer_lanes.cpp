@@ -41,7 +41,7 @@ bool WriterLanes::write(const void* sample, const void* probe, std::size_t bytes
     {
         turn_ = (turn_ + 1) % lanes_.size();
         Lane& lane = lanes_[turn_];
-        // The writer lost its reader.
+        // The lane lost its reader: it must be probed again.
         if (lane.is_open && turn_ != 0 && !dds::is_matched(lane.writer))
         {
             lane.is_open = lane.is_probed = false;
@@ -84,7 +84,7 @@ std::shared_ptr<void> WriterLanes::try_renew(Backoff::Clock::time_point now)
     return old;
 }
 
-/// Advances the first writer that is not open by one step.
+/// Takes the next step to open a further writer: creates it, sends the probe, or checks the answer.
 void WriterLanes::open_next(const void* probe)
 {
     const auto next = std::ranges::find(lanes_, false, &Lane::is_open);

@@ -15,12 +15,13 @@
 namespace tactus::dds
 {
 
-/// Several writers of one topic in one partition that take turns. Reliable delivery keeps the order
-/// of each writer, so a lost datagram delays only the later samples of its own writer. Samples may
-/// arrive in another order than they were written.
+/// Up to kLanes writers of one topic in one partition, used in turn. Reliable delivery keeps the
+/// order within each writer, so a lost datagram delays only that writer's later samples. Samples
+/// may arrive out of order.
 ///
-/// There is one writer at first; the next one joins after some traffic, when its reader has
-/// answered a probe: samples written before both sides know each other are lost.
+/// The first writer is open at once. A further one opens after kSamplesALane samples for each
+/// present writer, once its reader has acknowledged a probe: samples written before the two sides
+/// know each other are lost.
 class WriterLanes
 {
 public:
@@ -30,23 +31,25 @@ public:
 
     /// True if the first writer has a reader.
     [[nodiscard]] bool is_matched() const { return dds::is_matched(lanes_[0].writer); }
-    /// Writes with the next open writer; without a reader the sample is lost. `probe` is a sample
-    /// of the same type that may be lost, `bytes` the sample's size in a writer's memory until its
-    /// reader has answered. False if the sample is lost: no writer holds more than kUnackedMax.
+    /// Writes with the next open writer. `probe` is a sample that may be lost, to open further
+    /// writers; `bytes` is the memory that `sample` takes until it is acknowledged. False if the
+    /// sample is lost: the write failed, or every open writer has more than kUnackedMax
+    /// unacknowledged bytes.
     bool write(const void* sample, const void* probe, std::size_t bytes = 0);
 
     [[nodiscard]] std::size_t open() const;
 
     /// Replaces all writers by a new one. A packet in a writer's name with a much later sample
-    /// number, forged or not, makes its reader drop all further samples of that writer. Returns the
-    /// owner of the old writers, whose deletion takes a while; null if it is not due: Cyclone keeps
-    /// a little memory of each former writer.
+    /// number, perhaps forged, makes readers drop the writer's further samples. Returns the owner
+    /// of the old writers, which take a while to delete. Null within the Backoff, since Cyclone
+    /// keeps some memory of each former writer, or if no writer can be created.
     [[nodiscard]] std::shared_ptr<void> try_renew(Backoff::Clock::time_point now);
 
     static constexpr std::size_t kLanes = 4;
-    /// Memory that a reader that never answers costs its writer: a second of a stream.
+    /// Maximum unacknowledged bytes of a writer that may still write, in case its reader never
+    /// answers.
     static constexpr std::size_t kUnackedMax = std::size_t{1} << 20U;
-    /// Samples before the next lane is created.
+    /// Number of samples for each present lane after which a further lane is created.
     static constexpr std::uint64_t kSamplesALane = 64;
 
 private:
@@ -55,7 +58,7 @@ private:
         Endpoint writer;
         bool is_probed{false};
         bool is_open{false};
-        /// Bytes since all samples were acknowledged, as of the last check.
+        /// Bytes written since all samples were last known to be acknowledged.
         std::size_t unacked_bytes{0};
     };
 

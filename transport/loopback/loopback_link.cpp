@@ -44,13 +44,13 @@ void LoopbackLink::poll(PieceSink& sink)
     }
 }
 
-void LoopbackLink::lose_host()
+void LoopbackLink::lose_server()
 {
-    state_ = LinkState::host_gone;
+    state_ = LinkState::server_gone;
     in_flight_.clear();
 }
 
-void LoopbackLink::regain_host()
+void LoopbackLink::regain_server()
 {
     state_ = LinkState::connected;
     ++session_;
@@ -85,7 +85,7 @@ void LoopbackLink::launch(ContentKey key, std::span<const std::byte> bytes)
     in_flight_.push_back(std::move(piece));
 }
 
-/// SplitMix64: small, and the same on every machine.
+/// SplitMix64: the same numbers on every machine.
 std::uint64_t LoopbackLink::next_random() noexcept
 {
     random_ += 0x9E37'79B9'7F4A'7C15U;

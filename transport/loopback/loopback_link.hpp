@@ -10,21 +10,22 @@
 namespace tactus
 {
 
-/// Faults that a LoopbackLink applies to passing pieces. Shares are in 0 .. 1, per piece and
-/// independent.
+/// Faults that a LoopbackLink applies to pieces. Shares are probabilities, 0 to 1, independent for
+/// each piece.
 struct LoopbackFaults
 {
     std::uint64_t seed{1};
     double loss{0.0};
     double duplicates{0.0};
-    double damage{0.0};  ///< Share of pieces with one bit flipped.
-    double mix_ups{0.0}; ///< Share of pieces delivered under the key of the one before.
-    std::uint32_t delay_polls_min{0}; ///< Least delay of a piece, in polls.
-    std::uint32_t delay_polls_max{0}; ///< Greatest delay; unequal delays reorder.
+    double damage{0.0};  ///< Share of pieces in which one bit is flipped.
+    double mix_ups{0.0}; ///< Share of pieces delivered under the key of the previous piece.
+    std::uint32_t delay_polls_min{0}; ///< Minimum delay of a piece, in calls of poll().
+    /// Maximum delay; if above the minimum, pieces are reordered.
+    std::uint32_t delay_polls_max{0};
 };
 
-/// An in-process stand-in for a network: wraps another link and delays, loses, repeats, reorders,
-/// damages and mixes up its pieces, reproducibly from a seed. For tests; it allocates.
+/// Link for tests that imitates a network: wraps another link and delays, loses, repeats, reorders,
+/// damages and mixes up its pieces, reproducibly from a seed. Allocates.
 class LoopbackLink final : public ChunkLink, private PieceSink
 {
 public:
@@ -36,10 +37,10 @@ public:
     [[nodiscard]] std::uint64_t session() const override { return session_; }
     [[nodiscard]] std::uint64_t bytes_received() const override { return bytes_received_; }
 
-    /// Removes the server and all pieces in transit.
-    void lose_host();
-    /// Restores a server, the same or another one.
-    void regain_host();
+    /// Imitates the loss of the server: drops all pieces in transit, and state() is server_gone.
+    void lose_server();
+    /// Imitates the return of a server: a new session.
+    void regain_server();
 
 private:
     struct InFlight

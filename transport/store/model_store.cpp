@@ -74,7 +74,7 @@ ModelStore::ModelStore(ModelStore&& other) noexcept
     : path_(std::move(other.path_))
     , file_(std::exchange(other.file_, -1))
     , file_bytes_(other.file_bytes_)
-    , bytes_(std::move(other.bytes_)) // The buffer keeps its address, so header_ stays valid.
+    , bytes_(std::move(other.bytes_)) // The buffer does not move, so header_ stays valid.
     , header_(other.header_)
     , hash_(other.hash_)
     , chunks_(std::move(other.chunks_))
@@ -112,7 +112,7 @@ bool ModelStore::has(ContentKey key) const noexcept
     case ContentKind::chunk:
         return key.number < header_.counts().chunks();
     case ContentKind::header:
-        break; // The content of header_bytes().
+        break; // header_bytes() has it.
     }
     return false;
 }
@@ -126,7 +126,7 @@ Result<Done, Refusal> ModelStore::read(ContentKey key, std::vector<std::byte>& o
 {
     if (!has(key))
     {
-        return error(name_of(key) + " was asked for, which the model does not have");
+        return error(name_of(key) + " does not exist in the model");
     }
     const Extent extent = extent_of(key);
     out.resize(extent.bytes);
@@ -145,7 +145,7 @@ Result<Done, Refusal> ModelStore::read(ContentKey key, std::vector<std::byte>& o
 Result<Done, Refusal> ModelStore::open_file(const std::filesystem::path& path)
 {
     path_ = path;
-    // Non-blocking, so that a named pipe without a writer is refused below instead of waited for.
+    // Non-blocking, so that a named pipe without a writer is refused and does not block.
     file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat status = {};
     if (file_ < 0 || ::fstat(file_, &status) != 0)
@@ -174,7 +174,7 @@ Result<Done, Refusal> ModelStore::read_header()
     {
         return done;
     }
-    // The magic comes first: a foreign file must not be called a short model.
+    // The magic is checked first, so that a short file of another kind is not called a short model.
     if (available < kSpmMagic.size() ||
         std::memcmp(start.data(), kSpmMagic.data(), kSpmMagic.size()) != 0)
     {
@@ -210,9 +210,10 @@ Result<Done, Refusal> ModelStore::read_header()
     hash_ = model_hash(bytes_);
     if (fields.file_bytes != file_bytes_)
     {
-        return error(fmt::format(
-            "has {} bytes where its header states {}: it is {}", file_bytes_, fields.file_bytes,
-            file_bytes_ < fields.file_bytes ? "cut short" : "followed by other bytes"));
+        return error(
+            fmt::format("has {} bytes, but its header states {}: the file is {}", file_bytes_,
+                        fields.file_bytes,
+                        file_bytes_ < fields.file_bytes ? "cut short" : "followed by other bytes"));
     }
     return Done{};
 }
@@ -222,8 +223,9 @@ Result<Done, Refusal> ModelStore::check_base() const
     const HeaderFields& fields = header_.fields();
     if (fields.base_bytes != coded_base_bytes(fields))
     {
-        return error(fmt::format("the header states a base mesh of {} bytes, its counts need {}",
-                                 fields.base_bytes, coded_base_bytes(fields)));
+        return error(
+            fmt::format("the header states a base mesh of {} bytes, but its counts need {}",
+                        fields.base_bytes, coded_base_bytes(fields)));
     }
     std::vector<std::byte> coded;
     if (auto done = read({ContentKind::base, 0}, coded); !done)
@@ -244,7 +246,7 @@ Result<Done, Refusal> ModelStore::check_base() const
 Result<Done, Refusal> ModelStore::read_index()
 {
     const ModelCounts counts = header_.counts();
-    // Page by page, so that a forged header cannot make us allocate more than its file has.
+    // Reads page by page, so that a forged header causes no allocation beyond the file's size.
     std::vector<std::byte> coded;
     std::array<ChunkEntry, kChunksPerIndexPage> entries{};
     for (IndexPageId page{0}; page.value < counts.index_pages(); ++page.value)
@@ -276,9 +278,9 @@ Result<Done, Refusal> ModelStore::check_chunk_extents(IndexPageId page) const
     const Extent extent = extent_of({ContentKind::chunk, last});
     if (start < bytes_.size() || start > file_bytes_ || extent.offset + extent.bytes > file_bytes_)
     {
-        return error(fmt::format("the chunks of index page {} are stated at bytes {} to {}, the "
-                                 "file has {}",
-                                 page.value, start, extent.offset + extent.bytes, file_bytes_));
+        return error(fmt::format(
+            "the chunks of index page {} are stated at bytes {} to {}, but the file has {}",
+            page.value, start, extent.offset + extent.bytes, file_bytes_));
     }
     return Done{};
 }
@@ -311,7 +313,7 @@ ModelStore::Extent ModelStore::extent_of(ContentKey key) const noexcept
 Result<Done, Refusal> ModelStore::read_at(std::uint64_t offset, std::span<std::byte> out,
                                           const std::string& what) const
 {
-    // The file states the offset, so it may have any value; pread takes signed offsets.
+    // `offset` comes from the file and may have any value; pread takes signed offsets.
     constexpr std::uint64_t offset_max = std::numeric_limits<off_t>::max();
     std::size_t done = 0;
     while (done < out.size() && offset <= offset_max - out.size())
@@ -335,9 +337,9 @@ Result<Done, Refusal> ModelStore::read_at(std::uint64_t offset, std::span<std::b
     }
     if (done < out.size())
     {
-        return error(fmt::format("{} at offset {} needs {} bytes, {} are there: the file was cut "
-                                 "short",
-                                 what, offset, out.size(), done));
+        return error(
+            fmt::format("{} at offset {} needs {} bytes, but {} are left: the file was cut short",
+                        what, offset, out.size(), done));
     }
     return Done{};
 }

@@ -15,20 +15,20 @@
 #include <string>
 #include <vector>
 
-// One thread at a time, not the haptic one: opening and reading wait for the file.
+// One thread at a time, not the haptic one: open() and read() wait for the file.
 namespace tactus
 {
 
-/// Read-only access to one .spm file. Reads with pread, never mmap: a file that is truncated while
-/// it is served gives an error instead of SIGBUS.
+/// Read-only access to one .spm file, by pread and not mmap: if the file is truncated meanwhile, a
+/// read is refused, without SIGBUS.
 ///
-/// Memory: the header and 18 B a chunk (sizes and hashes); chunks are read on request.
+/// Memory: the header, and 18 bytes for the size and hash of each chunk. Chunks are not kept.
 class ModelStore
 {
 public:
-    /// Checks everything except the chunks' content: size, header, root hash, base mesh, index
-    /// pages, and that all extents lie within the file. Cost: reads header, base mesh and index.
-    /// Refused in one line with the path, like read().
+    /// Opens a file and checks all but the content of chunks: size, header, root hash, base mesh,
+    /// index pages, and that all pieces lie within the file. Reads header, base mesh and index
+    /// pages. A refusal is one line with the path, also in read().
     [[nodiscard]] static Result<ModelStore, Refusal> open(const std::filesystem::path& path);
 
     ModelStore(ModelStore&& other) noexcept;
@@ -38,7 +38,7 @@ public:
     ~ModelStore();
 
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-    /// Header and its bytes belong to the store, and move with it.
+    /// Header and its bytes live in the store; references stay valid if the store is moved.
     [[nodiscard]] const ModelHeader& header() const noexcept { return header_; }
     [[nodiscard]] std::span<const std::byte> header_bytes() const noexcept { return bytes_; }
     [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }
@@ -46,11 +46,11 @@ public:
 
     /// True if the model has this piece.
     [[nodiscard]] bool has(ContentKey key) const noexcept;
-    /// Bytes of a piece's coded form. The model must have the key (asserted).
+    /// Bytes of a piece in coded form. The model must have the piece (asserted).
     [[nodiscard]] std::size_t coded_bytes(ContentKey key) const noexcept;
 
-    /// Reads a piece in its coded form into `out` (resized; no allocation once it is large enough)
-    /// and verifies its hash. Refuses a key that the model lacks.
+    /// Reads a piece in coded form into `out` and verifies its hash. `out` is resized; no
+    /// allocation once its capacity suffices. Refused for a piece that the model lacks.
     [[nodiscard]] Result<Done, Refusal> read(ContentKey key, std::vector<std::byte>& out) const;
 
 private:

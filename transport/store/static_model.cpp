@@ -29,18 +29,18 @@ namespace tactus
 namespace
 {
 
-/// Upper limit for a model's memory; it takes only its need.
+/// Memory limit for planning the pools, which then take only the memory that they need.
 constexpr std::size_t kAllBytes = std::size_t{1} << 40U;
 constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
-/// Pause between two frames without arrivals.
+/// Pause after a frame without progress.
 constexpr std::chrono::milliseconds kPause{1};
-/// Factor for the distance of the faces around the nearest point: equal except for rounding.
+/// Factor on the nearest distance within which faces count as equally near, despite rounding.
 constexpr double kAsFar = 1.0 + 1e-9;
 
-/// Factor on a tree's usual room; at this one each block may hold a single face.
+/// Maximum factor on the usual room of the tree; suffices for blocks of a single face each.
 constexpr std::uint32_t kMostRoom = 16;
 
-/// Budgets without limits: no deadline applies to these frames.
+/// Budgets of a frame without a deadline.
 constexpr Budgets all_at_once()
 {
     Budgets budgets;
@@ -68,15 +68,15 @@ std::string piece_count(std::uint64_t pieces)
 struct StaticModel::Parts
 {
     ServedModel served;
-    std::optional<ModelHeader> header; ///< View of `served`.
+    std::optional<ModelHeader> header; ///< Parsed from served.header, which it refers to.
     std::unique_ptr<std::byte, AlignedDelete> memory;
     std::optional<Arena> arena;
     std::optional<Frame> frame;
     std::optional<ChunkLoader> chunk_loader;
 
-    /// Builds the frame with `room` times the tree's usual room.
+    /// Plans the memory and starts the frame, with `room` times the usual tree blocks and nodes.
     [[nodiscard]] std::optional<Refusal> start(std::uint32_t room);
-    /// Loads and refines as far as there is room.
+    /// Runs frames until the model is loaded and refined as far as the tree has room.
     [[nodiscard]] std::optional<Refusal> refine(std::chrono::milliseconds patience);
 };
 
@@ -92,7 +92,7 @@ std::optional<Refusal> StaticModel::Parts::start(std::uint32_t room)
     std::array sources{ModelSource{served.header, served.base, {}}};
     if (!try_plan({&*header, 1}, kAllBytes, 0, {&sources[0].capacities, 1}))
     {
-        return Refusal{fmt::format("{}: a terabyte is too little for it", served.name)};
+        return Refusal{fmt::format("{}: the model needs more than 1 TiB of memory", served.name)};
     }
     sources[0].capacities.blocks *= room;
     sources[0].capacities.nodes *= room;
@@ -109,7 +109,8 @@ std::optional<Refusal> StaticModel::Parts::start(std::uint32_t room)
         ::operator new (bytes, std::align_val_t{Arena::kAlignment}, std::nothrow)));
     if (memory == nullptr)
     {
-        return Refusal{fmt::format("{}: no memory, {} MiB are needed", served.name, bytes >> 20U)};
+        return Refusal{
+            fmt::format("{}: not enough memory: {} MiB are needed", served.name, bytes >> 20U)};
     }
     arena.emplace(std::span{memory.get(), bytes});
     if (const auto started = Frame::start(frame, *arena, setup); !started)
@@ -150,8 +151,9 @@ std::optional<Refusal> StaticModel::Parts::refine(std::chrono::milliseconds pati
         }
         else if (Clock::now() - last_progress > patience)
         {
-            return Refusal{fmt::format("{}: {} of {} pieces came, the next one didn't within {} ms",
-                                       served.name, here, all, patience.count())};
+            return Refusal{
+                fmt::format("{}: {} of {} pieces arrived, but the next one did not within {} ms",
+                            served.name, here, all, patience.count())};
         }
         else
         {
@@ -177,7 +179,7 @@ Result<std::unique_ptr<StaticModel>, Refusal> StaticModel::load(ServedModel serv
     auto parts = std::make_unique<Parts>();
     parts->served = std::move(served);
     parts->header = ModelHeader::parse(parts->served.header).value();
-    // The usual room suffices for meshes whose faces share their corners; needles need more.
+    // The usual room suffices if faces share their corners. Thin faces may need more.
     for (std::uint32_t room = 1; room <= kMostRoom; room *= 2)
     {
         auto refusal = parts->start(room);
@@ -191,7 +193,7 @@ Result<std::unique_ptr<StaticModel>, Refusal> StaticModel::load(ServedModel serv
             return std::unique_ptr<StaticModel>(new StaticModel(std::move(parts)));
         }
     }
-    return Refusal{fmt::format("{}: its tree needs more than {} times the usual room",
+    return Refusal{fmt::format("{}: the model's tree needs more than {} times the usual memory",
                                parts->served.name, kMostRoom)};
 }
 
@@ -207,7 +209,7 @@ const ModelHeader& StaticModel::header() const noexcept
 namespace
 {
 
-/// Queries of one thread, one after the other.
+/// Answers distance queries, one at a time, on one thread.
 class Asker
 {
 public:
@@ -221,7 +223,7 @@ public:
         surface_.distances_m = distances_m_;
     }
 
-    /// Distance of a point; point and answer are in the model's frame.
+    /// Distance of a point. Point and answer are in the model's frame.
     [[nodiscard]] PointDistance ask(const Vec3& point_m)
     {
         WalkBudget budget{kUnlimited, kUnlimited};

@@ -15,30 +15,30 @@
 #include <memory>
 #include <span>
 
-// Thread: any. Several threads may query one model at once.
+// Any thread, and several at once.
 namespace tactus
 {
 
-/// Distance from a point to the surface of a model's source mesh, in metres of the source's frame.
+/// Distance from a point to the surface of the source mesh, in metres in the source's frame.
 struct PointDistance
 {
     double lower_m{0.0};       ///< Lower bound of the distance.
-    double upper_m{kInfinity}; ///< Upper bound; the two differ by rounding.
-    /// Nearest point of the surface; one of them if there are several.
+    double upper_m{kInfinity}; ///< Upper bound; exceeds lower_m by rounding only.
+    /// A nearest point of the surface, any one if there are several.
     Vec3 nearest_m{0.0, 0.0, 0.0};
     Side side{Side::unsigned_distance};
 };
 
-/// A whole model, refined to its source mesh: distance queries without tools, frames and time.
+/// A model loaded as a whole and refined to its source mesh, for distance queries of points.
 class StaticModel
 {
 public:
-    /// Opens a model's file. Refused if it cannot be read, is damaged or does not fit into memory.
-    /// About 200 bytes and two microseconds a face.
+    /// Opens the file of a model. Refused if it cannot be read, is damaged or does not fit into
+    /// memory. Takes about 200 bytes and 2 us for each face.
     [[nodiscard]] static Result<std::unique_ptr<StaticModel>, Refusal>
     open(const std::filesystem::path& path);
-    /// Loads a model from any source; refused also if nothing arrives for `patience`. The link is
-    /// not used afterwards.
+    /// Loads a model over its link, which is not used afterwards. Refused as by open(), and if
+    /// there is no progress for `patience`.
     [[nodiscard]] static Result<std::unique_ptr<StaticModel>, Refusal>
     load(ServedModel served, std::chrono::milliseconds patience = std::chrono::seconds(10));
 
@@ -50,10 +50,10 @@ public:
 
     [[nodiscard]] const ModelHeader& header() const noexcept;
 
-    /// Distances of points in the source's frame; `answers` has as many elements as `points_m`.
-    /// Refused, with nothing written, if a point is not finite or farther than 2^36 quanta from the
-    /// model's corner, some 4,000 to a million diagonals. Some microseconds a point, less if
-    /// successive points are near each other.
+    /// Sets `answers` to the distances of points in the source's frame; both spans must have the
+    /// same size (asserted). Refused, with nothing written, if a point is not finite or farther
+    /// than 2^36 quanta from the model's corner, 4,000 to a million diagonals. A few us for each
+    /// point, less if successive points are near each other.
     [[nodiscard]] Result<Done, Refusal> distances(std::span<const Vec3> points_m,
                                                   std::span<PointDistance> answers) const;
 

@@ -13,7 +13,7 @@ namespace tactus
 namespace
 {
 
-/// Requests that wait for one poll; beyond it the oldest are dropped, as on a server.
+/// Maximum number of queued requests; beyond it the oldest are dropped, as on a server.
 constexpr std::size_t kWaitingMax = 1'024;
 
 } // namespace
@@ -54,7 +54,8 @@ void StoreLink::poll(PieceSink& sink)
     }
 }
 
-/// Reads one piece. A base mesh is read as a whole for each of its parts, usually one.
+/// Reads a piece into piece_; for a part of the base mesh the whole base mesh. False if it is
+/// damaged.
 bool StoreLink::try_read(ContentKey key)
 {
     const bool is_base = key.kind == ContentKind::base;

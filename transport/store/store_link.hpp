@@ -13,21 +13,21 @@
 #include <utility>
 #include <vector>
 
-// One thread, the transport thread: poll() waits for the file.
+// One thread, the transport thread. poll() waits for the file.
 namespace tactus
 {
 
-/// Serves a model from a local file with the same interface as a server (`--transport file`).
+/// Link to a model in a local file (`--transport file`), in place of a server.
 class StoreLink final : public ChunkLink
 {
 public:
-    /// `log` gets a line for each piece that cannot be read, at a limited rate.
+    /// `log` gets a line for each piece that cannot be read, once and at a limited rate.
     StoreLink(ModelStore store, Log log);
 
-    /// Up to 1,024 pieces may wait for poll(); beyond that the lowest-priority requests of the
-    /// call, then the oldest, are dropped.
+    /// Queues pieces for poll(), at most 1,024. Beyond that the last `keys`, then the oldest
+    /// requests, are dropped.
     void request(std::span<const ContentKey> keys, std::uint32_t generation) override;
-    /// Reads and delivers all waiting pieces.
+    /// Reads all queued pieces and delivers them.
     void poll(PieceSink& sink) override;
     [[nodiscard]] LinkState state() const override { return LinkState::connected; }
     [[nodiscard]] std::uint64_t session() const override { return 1; }
@@ -42,14 +42,14 @@ private:
 
     ModelStore store_;
     RateLimitedLog log_;
-    std::vector<ContentKey> waiting_; ///< Waiting pieces, highest priority last.
+    std::vector<ContentKey> waiting_; ///< Queued pieces, highest priority last.
     std::vector<std::byte> piece_;
     std::set<std::pair<ContentKind, std::uint32_t>> damaged_;
     std::uint64_t bytes_received_{0};
 };
 
-/// Opens a file as the model `name`, which must be valid (unchecked). Refused like
-/// ModelStore::open(). Allocates; any thread, except the haptic one.
+/// Opens a file as a model named `name`, which must be valid (unchecked). Refused like
+/// ModelStore::open(). Any thread except the haptic one.
 [[nodiscard]] Result<ServedModel, Refusal> serve_from_file(const std::filesystem::path& path,
                                                            const std::string& name, Log log);
 

@@ -64,7 +64,7 @@ private:
     std::vector<std::uint32_t> slots_;
 };
 
-/// Same cycle, starting at its least vertex.
+/// Rotates the corners so that the least vertex is the first; the orientation stays.
 Face turned_to_least(const Face& f)
 {
     if (f[0] < f[1] && f[0] < f[2])
@@ -80,7 +80,7 @@ Face sorted(Face face)
     return face;
 }
 
-/// First face with the same key, by face.
+/// Index of the first face with the same key, by face.
 template <typename Key>
 std::vector<std::uint32_t> first_with_equal_key(const std::vector<Face>& faces, Key key)
 {

@@ -21,7 +21,7 @@ std::size_t weld_equal_positions(TriangleMesh& mesh);
 
 std::size_t drop_degenerate_faces(std::vector<Face>& faces);
 
-/// Drops every face with the same vertices in the same orientation as an earlier one.
+/// Drops every face that has the vertices and the orientation of an earlier face.
 std::size_t drop_duplicate_faces(std::vector<Face>& faces);
 
 /// Drops vertices that no face uses and renumbers the rest.

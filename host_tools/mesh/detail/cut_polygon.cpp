@@ -37,11 +37,13 @@ namespace
 
 using Place = std::array<double, 2>;
 
-/// Tolerances of doubled areas, as parts of the square of the extent.
+/// Tolerances of doubled areas, as parts of the square of the extent: of the first attempt, and for
+/// rounding errors.
 constexpr double kStraight = 1e-7;
 constexpr double kRounding = 1e-14;
 
-/// Polygon seen along its normal, counter-clockwise; empty if it has no area.
+/// Projection of the polygon onto its plane, counter-clockwise, scaled to an extent of 1; empty if
+/// it has no area.
 std::vector<Place> flatten(std::span<const std::array<double, 3>> corners)
 {
     Eigen::AlignedBox3d box;
@@ -141,7 +143,8 @@ public:
     }
 
 private:
-    /// Quality above that of every ear: corners without area block others.
+    /// Quality above that of every ear, for corners without area: they are cut first, since they
+    /// block other ears.
     static constexpr double kNoArea = 4.0;
     static constexpr double kNoEar = -1.0;
 
@@ -150,7 +153,7 @@ private:
         return {previous_[i], i, next_[i]};
     }
 
-    /// The best remaining ear; the first of equal ones.
+    /// Remaining corner of the highest quality; the first of equal ones.
     [[nodiscard]] std::uint32_t best_of(const std::vector<double>& quality, std::size_t left) const
     {
         std::uint32_t best = first_;
@@ -163,14 +166,15 @@ private:
         return best;
     }
 
-    /// 1 if c is left of the line from a to b, -1 if right of it, 0 if on it.
+    /// 1 if c is left of the line from a to b, -1 if right, 0 if c is on the line within the
+    /// tolerance.
     [[nodiscard]] int side_of(std::uint32_t a, std::uint32_t b, std::uint32_t c) const
     {
         const double area = area_of(flat_[a], flat_[b], flat_[c]);
         return area > tolerance_ ? 1 : area < -tolerance_ ? -1 : 0;
     }
 
-    /// Height of the ear over its longest side, or one of the two constants.
+    /// Height of the ear divided by its longest side, or kNoArea or kNoEar.
     [[nodiscard]] double quality_of(std::uint32_t i) const
     {
         const auto [a, b, c] = triangle_at(i);
@@ -217,7 +221,8 @@ private:
             {
                 continue;
             }
-            // An end of the diagonal may touch the edge from inside, which is left of it.
+            // An end of the diagonal may touch the edge from inside the polygon, that is, from the
+            // left.
             const auto [least, most] = std::minmax({side_of(u, v, a), side_of(u, v, c)});
             if (least < 0 && most >= 0)
             {
@@ -230,7 +235,7 @@ private:
     const std::vector<Place>& flat_;
     double tolerance_;
     std::vector<std::uint32_t> next_;     ///< Next remaining corner of each remaining corner.
-    std::vector<std::uint32_t> previous_; ///< Previous remaining corner.
+    std::vector<std::uint32_t> previous_; ///< Previous remaining corner of each remaining corner.
     std::uint32_t first_{0};              ///< One remaining corner.
 };
 

@@ -30,11 +30,11 @@ constexpr std::array<Kind, 18> kBinaryKinds{{
      "is compressed by xz: unpack it first"},
     {"\x28\xB5\x2F\xFD"sv, "is compressed by zstd: unpack it first"},
     {"7z\xBC\xAF"sv, "is a 7-Zip archive: unpack it first"},
-    {"\xFF\xFE"sv, "is text in UTF-16: iconv -f UTF-16 -t UTF-8 makes one that can be read"},
-    {"\xFE\xFF"sv, "is text in UTF-16: iconv -f UTF-16 -t UTF-8 makes one that can be read"},
+    {"\xFF\xFE"sv, "is text in UTF-16: convert it with iconv -f UTF-16 -t UTF-8"},
+    {"\xFE\xFF"sv, "is text in UTF-16: convert it with iconv -f UTF-16 -t UTF-8"},
     {"glTF"sv, "is a binary glTF scene: its name must end in .glb"},
     {"TACTSPM"sv, "is a model already"},
-    {"Kaydara FBX"sv, "is an FBX file: export it as one of the formats that are read"},
+    {"Kaydara FBX"sv, "is an FBX file: export it as .ply, .obj, .stl or .off"},
     {"BLENDER"sv, "is a Blender file: export a mesh from it"},
     {"DRACO"sv, "is a mesh compressed by Draco: unpack it first"},
     {"%PDF"sv, "is a PDF document, not a mesh"},
@@ -43,19 +43,19 @@ constexpr std::array<Kind, 18> kBinaryKinds{{
     {"\x7F"
      "ELF"sv,
      "is a program, not a mesh"},
-    {"ISO-10303"sv, "is a STEP file: a CAD program makes a mesh of it"},
+    {"ISO-10303"sv, "is a STEP file: export a mesh from a CAD program"},
 }};
 
 /// First words of text files, in lower case, and messages about them.
 constexpr std::array<Kind, 7> kTextKinds{{
     {"version https://git-lfs"sv,
-     "is a Git LFS pointer, not the file that it stands for: 'git lfs pull' fetches that"},
-    {"<!doctype html"sv, "is a page of HTML, not a mesh; was it downloaded from a page about it?"},
-    {"<html"sv, "is a page of HTML, not a mesh; was it downloaded from a page about it?"},
-    {"<"sv, "is XML, as COLLADA, X3D and VTK write: export it as one of the formats that are read"},
+     "is a Git LFS pointer, not the mesh itself: fetch the mesh with 'git lfs pull'"},
+    {"<!doctype html"sv, "is an HTML page, not a mesh: download the mesh file itself"},
+    {"<html"sv, "is an HTML page, not a mesh: download the mesh file itself"},
+    {"<"sv, "is XML, as in COLLADA, X3D and VTK files: export it as .ply, .obj, .stl or .off"},
     {"{"sv, "is JSON; a glTF scene's name must end in .gltf"},
-    {"iso-10303"sv, "is a STEP file: a CAD program makes a mesh of it"},
-    {"# vtk"sv, "is a VTK file: export it as one of the formats that are read"},
+    {"iso-10303"sv, "is a STEP file: export a mesh from a CAD program"},
+    {"# vtk"sv, "is a VTK file: export it as .ply, .obj, .stl or .off"},
 }};
 
 /// First words of the formats that can be read.
@@ -99,7 +99,7 @@ std::string other_kind(std::string_view bytes, std::optional<MeshFormat> expecte
     const std::string_view start = without_byte_order_mark(bytes).substr(0, 512);
     if (is_utf16_without_mark(start.substr(0, start.size() & ~std::size_t{1})))
     {
-        return "is text in UTF-16: iconv -f UTF-16LE -t UTF-8 makes one that can be read";
+        return "is text in UTF-16: convert it with iconv -f UTF-16LE -t UTF-8";
     }
     if (std::ranges::any_of(start, is_control))
     {
@@ -119,7 +119,7 @@ std::string other_kind(std::string_view bytes, std::optional<MeshFormat> expecte
     {
         if (first == word && format != expected)
         {
-            return fmt::format("begins as {} does, which its name doesn't tell: give --format {}",
+            return fmt::format("begins like a {} file, unlike its name: give --format {}",
                                format_name(format), format_name(format));
         }
     }

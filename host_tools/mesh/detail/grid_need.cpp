@@ -19,17 +19,18 @@ namespace
 
 constexpr std::size_t kEdgeFacesMax = 4'096;
 constexpr std::size_t kPatchesMax = 256;
-/// Faces a patch; limits the patches of small meshes, which cost time.
+/// Number of faces for each patch: limits the number of patches of small meshes.
 constexpr std::size_t kFacesToPatch = 64;
 constexpr std::size_t kPatchFaces = 48;
-/// Minimum, since the normals of fewer faces are not significant.
+/// Minimum number of faces of a patch: the normals of fewer are not significant.
 constexpr std::size_t kLeastPatchFaces = 8;
 
 constexpr double kStepsInEdge = 16.0;
-/// Shares of the edges, and of the patches, that may be finer than the grid allows.
+/// Shares of the edges and of the patches that may need a finer grid than the chosen one.
 constexpr double kShortEdges = 0.01;
 constexpr double kFlatterPatches = 0.2;
-/// Mean rotation of a face's normal by rounding to a step: half the step over the face's height.
+/// Mean rotation of a face's normal by rounding, in radians: this times the step, over the face's
+/// height.
 constexpr double kTurnOfStep = 0.5;
 constexpr double kSpreadOfTurn = 2.0;
 /// Cosine of 30 degrees: normals farther apart belong to a sharp edge.
@@ -39,8 +40,8 @@ constexpr double kFinest = 0x1p-20;
 constexpr std::size_t kMostDigits = 8;
 constexpr std::size_t kVerticesRead = 512;
 
-/// Visits at most `most` of the numbers below a count. They are spaced by the golden ratio: a fixed
-/// step would match the rows of some mesh, and see one line of its pattern.
+/// Visits at most `most` of the numbers below `count`, spaced by the golden ratio. A fixed step
+/// could match the rows of a regular mesh and see only one line of its pattern.
 template <typename Visit>
 void visit_spread(std::size_t count, std::size_t most, const Visit& visit)
 {
@@ -121,7 +122,7 @@ double source_step(const TriangleMesh& mesh)
     return step;
 }
 
-/// Quantile of the values at a share.
+/// Quantile of the values, at least one, at a share of 0 to below 1; reorders the values.
 double at_share(std::vector<double>& values, double share)
 {
     const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -149,7 +150,7 @@ double need_of_edges(const TriangleMesh& mesh, double diagonal)
     return lengths.empty() ? GridNeed{}.for_edges : at_share(lengths, kShortEdges) / kStepsInEdge;
 }
 
-/// Finds patches around faces and measures the need of their relief.
+/// Collects the patch of faces around a face and measures the largest step that keeps its relief.
 class PatchMeter
 {
 public:

@@ -18,10 +18,10 @@
 ///         / f3 | f4                / f3 | f4
 ///
 /// One pass is enough without opposite copies: at an edge all half-edges are unpaired or exactly
-/// two are paired. Of the unpaired ones no two with the same direction share a fan at either end,
+/// two are paired. No two unpaired half-edges of the same direction share a fan at either end,
 /// since each would have to be that fan's first (or last) face. Afterwards an edge therefore has at
-/// most one face in each direction, and when two opposite unpaired ones keep both end points in
-/// common they are the two ends of one fan at each, which closes it.
+/// most one face in each direction. Two opposite unpaired half-edges that keep both end points in
+/// common are the two ends of one fan at each, which closes the fan.
 ///
 /// Opposite copies (two-sided sheets) give every edge more than two faces. They are paired in a
 /// first pass with copies only among copies; there pairs and borders mix at one edge, the argument
@@ -46,7 +46,7 @@ std::uint32_t previous(std::uint32_t h)
 class Splitter
 {
 public:
-    /// `is_copy` is empty in the plain pass.
+    /// `is_copy` flags opposite copies, by face; empty in the plain pass.
     Splitter(std::vector<Face>& faces, std::uint32_t vertex_count,
              std::vector<std::uint8_t> is_copy)
         : faces_(faces)
@@ -92,7 +92,7 @@ private:
         {
             bucket[--start[least(h) + 1]] = h;
         }
-        // Filling from the back has moved start[v + 1] down to where v's bucket starts.
+        // After filling from the back, start[v + 1] is the start of v's bucket.
         for (std::size_t v = 0; v < vertex_count_; ++v)
         {
             const std::size_t end = v + 1 < vertex_count_ ? start[v + 2] : half_edges;

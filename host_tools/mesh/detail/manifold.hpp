@@ -13,7 +13,7 @@ namespace tactus::detail
 struct ManifoldSplit
 {
     std::size_t cut_edges{0};
-    /// Originals of the added vertices, in their order.
+    /// Original vertex of each added vertex.
     std::vector<std::uint32_t> copy_of;
 };
 

@@ -134,7 +134,7 @@ private:
     {
         if (header_.elements.empty())
         {
-            return cursor_.error("a property stands before the first element");
+            return cursor_.error("a property precedes the first element");
         }
         PlyProperty property;
         std::string word = next_word();
@@ -144,7 +144,7 @@ private:
             property.count_type = parse_type(word);
             if (!property.count_type || !is_whole(*property.count_type))
             {
-                return cursor_.error(quote(word) + " can't count a list; must be a whole type");
+                return cursor_.error(quote(word) + " can't count a list; must be an integer type");
             }
             word = next_word();
         }

@@ -62,11 +62,12 @@ void PolygonSink::finish(std::vector<std::string>& notes)
     }
     if (crossing > 0)
     {
-        notes.push_back(crossing == 1
-                            ? "1 polygon crosses itself or has no area; cut into a fan"
-                            : fmt::format("{} polygons cross themselves or have no area; cut "
-                                          "into fans",
-                                          crossing));
+        notes.push_back(
+            crossing == 1
+                ? "1 polygon crosses itself or has no area; cut into a fan of triangles"
+                : fmt::format(
+                      "{} polygons cross themselves or have no area; cut into fans of triangles",
+                      crossing));
     }
     if (smaller_ > 0)
     {

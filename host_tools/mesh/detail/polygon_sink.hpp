@@ -21,7 +21,7 @@ class PolygonSink
 public:
     explicit PolygonSink(TriangleMesh& mesh) : mesh_(mesh) {}
 
-    /// Adds a polygon. Equal neighbours among more than three corners count once.
+    /// Adds a polygon. If there are more than three corners, adjacent equal corners count once.
     void add(std::span<const std::uint32_t> corners);
 
     /// Cuts the polygons; every vertex must have its position, and the corners must be vertices.
@@ -38,7 +38,7 @@ private:
     TriangleMesh& mesh_;
     std::vector<std::uint32_t> corners_;
     std::vector<Fan> fans_;    ///< Polygons with more than three corners.
-    std::uint64_t smaller_{0}; ///< Polygons with fewer than three.
+    std::uint64_t smaller_{0}; ///< Number of polygons with fewer than three corners.
 };
 
 } // namespace tactus::detail

@@ -18,7 +18,7 @@ namespace
 
 constexpr std::size_t kStepBytes = std::size_t{1} << 20U;
 
-/// All bytes from a descriptor.
+/// Reads all bytes of a file descriptor, to its end.
 Result<std::string, Refusal> read_to_end(int descriptor)
 {
     std::string bytes;

@@ -17,7 +17,7 @@ inline constexpr const char* kStandardInput = "-";
 /// Reads a file like read_file(), or a pipe, a device or standard input (by its name) to its end.
 [[nodiscard]] Result<std::string, Refusal> read_input(const std::filesystem::path& path);
 
-/// Name of an input in messages.
+/// Name of an input for messages.
 [[nodiscard]] std::string input_name(const std::filesystem::path& path);
 
 } // namespace tactus::detail

@@ -20,8 +20,8 @@ namespace tactus::detail
 namespace
 {
 
-/// Keywords of lines that do not affect the surface. Names may end in a backslash, which only
-/// continues lines of numbers.
+/// Keywords of lines with names that do not affect the surface. A backslash at the end of a name
+/// does not continue the line, as it does in a line of numbers.
 constexpr std::array<std::string_view, 15> kPassedOver{
     "g",     "o",        "s",        "mg",  "usemtl",     "mtllib",    "usemap", "maplib",
     "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "call"};
@@ -53,18 +53,20 @@ public:
         polygons_.finish(file_.notes);
         if (weights_ > 0)
         {
-            file_.notes.push_back(counted(weights_, "vertex", "vertices") +
-                                  " with a weight other than 1, by which x, y and z are divided");
+            file_.notes.push_back(
+                counted(weights_, "vertex", "vertices") +
+                " with a weight other than 1: x, y and z are divided by the weight");
         }
         if (left_out_ > 0)
         {
-            file_.notes.push_back(
-                fmt::format("{} points, lines, curves or free-form surfaces left out", left_out_));
+            file_.notes.push_back(counted(left_out_, "element") +
+                                  " left out: points, lines, curves or free-form surfaces");
         }
         if (not_understood_ > 0)
         {
-            file_.notes.push_back(fmt::format("{} lines not understood, the first is line {}",
-                                              not_understood_, first_not_understood_));
+            file_.notes.push_back(fmt::format("{} not understood, the first is line {}",
+                                              counted(not_understood_, "line"),
+                                              first_not_understood_));
         }
         note_missing_line_end(text_, file_.notes);
         return std::move(file_);
@@ -136,8 +138,9 @@ private:
         return std::nullopt;
     }
 
-    /// Divides by a fourth number, the weight of homogeneous coordinates, unless it is the first of
-    /// a colour's three. A point at infinity is no position, so a weight of 0 is ignored.
+    /// Divides the position by a fourth number on the line, the weight of homogeneous coordinates.
+    /// Exactly three numbers after the position are a colour. A point at infinity is no position,
+    /// so a weight of 0 is ignored.
     void divide_by_weight(std::array<double, 3>& position)
     {
         const auto weight = parse_number(next_word());

@@ -48,9 +48,8 @@ public:
         }
         if (!first_of_line().empty())
         {
-            file_.notes.push_back(fmt::format("line {}: what follows the last of {} faces is left "
-                                              "out",
-                                              cursor_.line(), faces_));
+            file_.notes.push_back(
+                fmt::format("line {}: data after the last face left out", cursor_.line()));
         }
         note_missing_line_end(text_, file_.notes);
         return std::move(file_);
@@ -139,16 +138,15 @@ private:
         {
             return cursor_.error("expected the numbers of vertices and faces (ASCII OFF)");
         }
-        if (cursor_.line() != line) // One number a line: that of the edges is on the next.
+        // With one number a line, the number of edges is on the next line.
+        if (cursor_.line() != line)
         {
             next();
         }
         cursor_.skip_line();
         vertices_ = static_cast<std::uint64_t>(*vertices);
         faces_ = static_cast<std::uint64_t>(*faces);
-        // A vertex is at least "0 0 0
-        // ", a face at least "0
-        // ".
+        // A vertex has at least 6 bytes ("0 0 0" and a line end), a face at least 2.
         const std::uint64_t room = cursor_.remaining() + 1;
         if (vertices_ > room / 6 || faces_ > room / 2)
         {

@@ -101,7 +101,7 @@ public:
         return parse_number(token_);
     }
 
-    /// A digit and a blank.
+    /// Least size of a value in a text file: a digit and a blank.
     [[nodiscard]] static std::size_t least_bytes(PlyType) { return 2; }
     [[nodiscard]] std::size_t remaining() const { return cursor_.remaining() + 1; }
     [[nodiscard]] bool at_end() { return cursor_.next_token().empty(); }
@@ -114,7 +114,7 @@ public:
 
 private:
     TextCursor cursor_;
-    std::string_view token_; ///< Last token.
+    std::string_view token_; ///< Token read last, for fault().
 };
 
 template <typename Values>
@@ -142,7 +142,7 @@ public:
         }
         if (!values_.at_end())
         {
-            file_.notes.push_back(values_.where() + "what follows the last element is left out");
+            file_.notes.push_back(values_.where() + "data after the last element left out");
         }
         polygons_.finish(file_.notes);
         return std::move(file_);
@@ -222,12 +222,12 @@ private:
             {
                 index_lists_.push_back(whole.front());
                 file_.notes.push_back("the faces' list " + quote(whole.front()->name) +
-                                      " is taken for the one of vertices, vertex_indices");
+                                      " is read as vertex_indices");
             }
             else if (element.name == "face" && element.count > 0)
             {
-                return Refusal{"the faces have no list of vertices, vertex_indices; they have " +
-                               (all.empty() ? "nothing" : all)};
+                return Refusal{"the faces have no list vertex_indices; their properties: " +
+                               (all.empty() ? "none" : all)};
             }
         }
         return std::nullopt;
@@ -370,8 +370,8 @@ private:
     }
 
     /// Adds a vertex to the strip. From the third on, each makes a face with the two before it;
-    /// every second face is reversed so that all have the same winding. Equal neighbours only steer
-    /// the strip and make no face.
+    /// every second face is reversed so that all have the same winding. A triple with two equal
+    /// vertices only steers the strip and makes no face.
     void add_to_strip(std::uint32_t index)
     {
         strip_.push_back(index);

@@ -88,8 +88,8 @@ public:
         }
         if (!word.empty())
         {
-            file_.notes.push_back(fmt::format(
-                "line {}: what follows the last 'endsolid' is left out", cursor_.line()));
+            file_.notes.push_back(
+                fmt::format("line {}: data after the last 'endsolid' left out", cursor_.line()));
         }
         polygons_.finish(file_.notes);
         return std::move(file_);
@@ -103,7 +103,7 @@ private:
             return std::nullopt;
         }
         return cursor_.error(found.empty()
-                                 ? fmt::format("the file ends where '{}' is due", wanted)
+                                 ? fmt::format("the file ends where '{}' is expected", wanted)
                                  : fmt::format("expected '{}', found {}", wanted, quote(found)));
     }
 
@@ -114,7 +114,8 @@ private:
         return word == "end" ? word + lower(cursor_.next_token()) : word;
     }
 
-    /// True if a facet begins on this line after the cursor, which is then moved before it.
+    /// Finds a facet on the rest of this line. If one begins there, moves the cursor before it and
+    /// returns true.
     static bool finds_facet_in_line(TextCursor& cursor)
     {
         constexpr int kWordsBetween = 5; // "normal x y z outer".
@@ -137,8 +138,8 @@ private:
         }
     }
 
-    /// Skips a solid's name, which ends with the line. In a text of one line it ends at the next
-    /// due word: "facet", or a "solid" followed by a facet.
+    /// Skips a solid's name, which ends with the line. In a text of one line the name ends at the
+    /// word `due`: "facet", or "solid" with a facet after it.
     void skip_name(std::string_view due)
     {
         TextCursor ahead = cursor_;
@@ -172,11 +173,11 @@ private:
         }
         if (passed_over > 0 && word.empty())
         {
-            return cursor_.error("expected 'facet' or 'endsolid' behind 'solid'");
+            return cursor_.error("expected 'facet' or 'endsolid' after 'solid'");
         }
         if (passed_over > 0)
         {
-            file_.notes.push_back(fmt::format("line {}: {} of no meaning before the first facet",
+            file_.notes.push_back(fmt::format("line {}: {} left out before the first facet",
                                               cursor_.line(), counted(passed_over, "line")));
         }
         for (; word != "endsolid"; word = next_word())
@@ -250,15 +251,16 @@ private:
     PolygonSink polygons_{file_.mesh};
 };
 
-/// Reads a file that is longer than its triangles: two concatenated files, or a count that is too
-/// small for a tail that could be triangles.
+/// Reads a binary file whose length does not match its count. A tail may be a second file, which is
+/// read too, or padding, which is ignored. Refuses a file that is too short, and a tail that could
+/// be further triangles.
 Result<MeshFile, Refusal> read_binary_with_tail(std::string_view bytes)
 {
     const std::uint64_t triangles = binary_triangles(bytes);
     const std::uint64_t declared = kHeaderBytes + kTriangleBytes * triangles;
-    const std::string counts = fmt::format("the header at byte 80 declares {} triangles, which "
-                                           "makes {} bytes; the file has {}",
-                                           triangles, declared, bytes.size());
+    const std::string counts = fmt::format(
+        "the header at byte 80 declares {} triangles, which need {} bytes; the file has {}",
+        triangles, declared, bytes.size());
     if (triangles == 0 || bytes.size() < declared)
     {
         return Refusal{counts};
@@ -278,7 +280,7 @@ Result<MeshFile, Refusal> read_binary_with_tail(std::string_view bytes)
     if (is_padding || !has_binary_length(tail))
     {
         file.value().notes.push_back(counted(tail.size(), "byte") +
-                                     " behind the last triangle left out");
+                                     " after the last triangle left out");
         return file;
     }
     auto second = read_binary(tail);

@@ -18,12 +18,12 @@ namespace tactus::detail
 namespace
 {
 
-/// Maximum number of rounds: a face has three edges, and each round cuts one of them.
+/// Maximum number of calls of stitch_once(): each cuts at most one of the three edges of a face.
 constexpr int kRoundsMax = 3;
 /// Maximum number of cells along an axis: three coordinates fit in 63 bits.
 constexpr double kCellsMax = 0x1p20;
 
-/// Edge `edge` of a face, which no other face has.
+/// Border edge: edge `edge`, 0 to 2, of a face; no other face has it.
 struct BorderEdge
 {
     std::uint32_t face{0};
@@ -122,8 +122,8 @@ public:
         std::ranges::sort(members_);
     }
 
-    /// Calls `visit` with each vertex of the cells within `tolerance` of the segment, and possibly
-    /// some more; some more than once.
+    /// Calls `visit` with at least each vertex within `tolerance` of the segment; a vertex may be
+    /// visited more than once, or be farther away.
     template <typename Visit>
     void visit_near(const Vec3& from, const Vec3& to, double tolerance, const Visit& visit) const
     {
@@ -171,7 +171,7 @@ private:
     std::vector<std::pair<std::uint64_t, std::uint32_t>> members_;
 };
 
-/// Vertices on an edge, with their distance along it.
+/// Vertices on an edge, each with its distance from the first end of the edge.
 using Stops = std::vector<std::pair<double, std::uint32_t>>;
 
 /// Border vertices on the edge except its ends, ordered from its first end.
@@ -198,7 +198,8 @@ Stops stops_on(const TriangleMesh& mesh, const VertexCells& cells, const BorderE
                          }
                      });
     std::ranges::sort(stops);
-    Stops apart; // If several share a place, the mesh's own one stays, which has the lowest number.
+    // Stops without near duplicates: the lowest number stays, so the mesh's own vertices go first.
+    Stops apart;
     for (const auto& stop : stops)
     {
         if (apart.empty() || stop.first - apart.back().first > 2.0 * tolerance)
@@ -226,7 +227,7 @@ void cut_face(TriangleMesh& mesh, const BorderEdge& border, const Stops& stops)
     }
 }
 
-/// Cuts at most one edge of each face.
+/// Cuts at most one edge of each face; returns the number of added faces.
 std::size_t stitch_once(TriangleMesh& mesh, double tolerance, std::size_t first_beside)
 {
     std::vector<bool> is_border = find_border_vertices(mesh);
@@ -255,7 +256,8 @@ std::size_t stitch_once(TriangleMesh& mesh, double tolerance, std::size_t first_
     return mesh.faces.size() - before;
 }
 
-/// First border vertex within the tolerance of each vertex that keeps its position.
+/// New place of each vertex: the first border vertex within the tolerance that stays in place, or
+/// the vertex itself.
 std::vector<std::uint32_t> first_near(const TriangleMesh& mesh, const std::vector<bool>& is_border,
                                       const VertexCells& cells, double tolerance)
 {

@@ -13,8 +13,7 @@
 namespace tactus::detail
 {
 
-/// Common rules of all text formats for ends of lines, words and numbers, and the beginning of a
-/// text.
+/// Rules that all text formats share: beginning of a text, ends of lines, words and numbers.
 
 /// Text without the byte-order mark of UTF-8 that some editors write before it.
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
@@ -52,7 +51,7 @@ private:
 /// Number that the whole token spells; a leading plus and Fortran's exponents (1.5D+02) are
 /// allowed. Values below the range become 0, above it infinite (and are refused later).
 [[nodiscard]] std::optional<double> parse_number(std::string_view token);
-/// Integer that the whole token spells; it may have decimals (3.0) below 2^53.
+/// Integer that the whole token spells; below 2^53 it may have the form of a number, such as 3.0.
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view token);
 /// Message "'x', not a number", with a remedy for a decimal comma.
 [[nodiscard]] std::string no_number(std::string_view token);

@@ -32,7 +32,7 @@ namespace
 using Point = std::array<double, 3>;
 using Face = std::array<std::uint32_t, 3>;
 
-/// Vertices of a piece whose positions decide whether it lies inside another one.
+/// Maximum number of vertices of a piece that are tested for being inside another piece.
 constexpr std::uint32_t kMaxSamples = 16;
 /// Share of the summed magnitudes below which volumes and distances are rounding errors.
 constexpr double kNoise = 1e-12;
@@ -41,8 +41,9 @@ constexpr std::size_t kMaxCellsAlong = 1024;
 struct Piece
 {
     bool is_closed{true};
-    double six_volume{0.0};           ///< Six times the volume, in cubes of the extent.
-    double six_absolute_volumes{0.0}; ///< The same sum with the absolute value of each term.
+    double six_volume{0.0}; ///< Six times the volume, in cubes of the extent.
+    /// The sum of the absolute values of the terms of `six_volume`.
+    double six_absolute_volumes{0.0};
     std::uint32_t vertices{0};
     Point low{};
     Point high{};
@@ -55,7 +56,7 @@ struct Piece
     {
         return std::abs(six_volume) > kNoise * six_absolute_volumes;
     }
-    /// True if the other's box lies strictly within this one's.
+    /// True if the box of `other` lies strictly within the box of this piece.
     [[nodiscard]] bool is_round(const Piece& other) const
     {
         bool is_in = true;
@@ -88,7 +89,8 @@ public:
         piece_of.resize(root_.size());
         for (std::uint32_t v = 0; v < root_.size(); ++v)
         {
-            const std::uint32_t root = root_of(v); // The least vertex, which comes first.
+            // The least vertex of the piece, visited before its others.
+            const std::uint32_t root = root_of(v);
             if (root == v)
             {
                 piece_of[v] = static_cast<std::uint32_t>(pieces.size());
@@ -132,11 +134,11 @@ private:
         }
     }
 
-    /// Adds the tetrahedron of the face and a vertex of its piece, which loses no digits far from
-    /// the origin.
+    /// Adds the volume of the tetrahedron of a face and `apex`, a vertex of its piece: far from the
+    /// origin, that loses no digits.
     void add_volume(Piece& piece, const Face& face, const Point& apex)
     {
-        // Scaled, since squares of tiny or huge lengths are out of range.
+        // Lengths are scaled, since squares of tiny or huge ones are out of range.
         const double extent = piece.extent();
         std::array<Point, 3> side{};
         for (std::size_t k = 0; k < 3; ++k)
@@ -156,7 +158,8 @@ private:
 
     void mark_open(std::vector<Piece>& pieces, const std::vector<std::uint32_t>& piece_of) const
     {
-        std::vector<std::uint32_t> first_less_last(piece_of.size(), 0); // Modulo 2^32.
+        // Sum by vertex as described above, modulo 2^32.
+        std::vector<std::uint32_t> first_less_last(piece_of.size(), 0);
         for (const Face& face : mesh_.faces)
         {
             for (std::size_t k = 0; k < 3; ++k)
@@ -172,7 +175,8 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    std::vector<std::uint32_t> root_; ///< A vertex of the same piece; in the end the least one.
+    /// Union-find: a lower vertex of the same piece, by vertex; the least one is its own entry.
+    std::vector<std::uint32_t> root_;
 };
 
 struct Sample
@@ -276,8 +280,8 @@ enum class Crossing
     touching,
 };
 
-/// Crossing of the face with the line through the point along x. Edges run from their lesser
-/// vertex.
+/// Crossing of the face with the line through the point along x. Each edge is tested from its lower
+/// vertex to its higher, so both its faces get the same result.
 Crossing crossing_of(const Face& face, const std::array<Point, 3>& corners, const Point& p)
 {
     bool is_crossed = false;
@@ -369,7 +373,7 @@ public:
     }
 
 private:
-    /// Flag: the sample lies on a face of b.
+    /// Flag in `hits_`: the sample lies on a face of piece b.
     static constexpr std::uint32_t kTouched = 0x8000'0000U;
 
     static std::vector<Sample> take_samples(const TriangleMesh& mesh,
@@ -422,11 +426,12 @@ private:
     SampleGrid grid_;
     IndexLists faces_;                      ///< Faces by piece.
     std::vector<std::uint32_t> samples_of_; ///< Number of samples by piece.
-    std::vector<std::uint32_t> hits_;       ///< Faces of b ahead of each sample, and kTouched.
-    std::vector<std::size_t> hit_;          ///< Samples whose hits are not 0.
+    /// Number of faces of piece b ahead of each sample along +x, and the flag kTouched.
+    std::vector<std::uint32_t> hits_;
+    std::vector<std::size_t> hit_; ///< Indices of samples whose hits are not 0.
 };
 
-/// True if an open piece may enclose this one. Three vertices enclose nothing.
+/// True if an open piece may enclose this one. A piece of three vertices encloses nothing.
 bool is_doubtful(const Piece& piece, const std::vector<Piece>& pieces)
 {
     return std::ranges::any_of(

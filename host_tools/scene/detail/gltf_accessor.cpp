@@ -30,7 +30,7 @@ T value_at(const char* at)
 void refuse_compressed(const JsonAt& json, std::string_view extension)
 {
     json.refuse(fmt::format("is compressed with {}, which is not supported: export it without "
-                            "compression, or decode it, as gltf-transform copy does",
+                            "compression, or decode it, for example with gltf-transform copy",
                             extension));
 }
 
@@ -84,8 +84,8 @@ std::size_t GltfAccessor::bytes_of(Component component)
     }
 }
 
-/// Bytes from `user`'s byteOffset to the end of its bufferView. Sets `stride` to the view's, if it
-/// has one.
+/// Bytes from the byteOffset of `user` to the end of its bufferView. Sets `stride` to the view's
+/// byteStride, if it has one.
 std::string_view GltfAccessor::view_of(GltfFile& file, const JsonAt& user, std::size_t& stride)
 {
     const JsonAt root = file.root();
@@ -112,12 +112,14 @@ std::string_view GltfAccessor::view_of(GltfFile& file, const JsonAt& user, std::
     const std::uint64_t length = view.at("byteLength").whole(kMaxGltfBytes);
     if (begin > bytes.size() || length > bytes.size() - begin)
     {
-        view.refuse(fmt::format("reaches byte {} of a buffer of {}", begin + length, bytes.size()));
+        view.refuse(fmt::format("ends at byte {}, but its buffer has {} bytes", begin + length,
+                                bytes.size()));
     }
     const std::uint64_t inner = offset_of(user);
     if (inner > length)
     {
-        user.refuse(fmt::format("begins at byte {} of a bufferView of {}", inner, length));
+        user.refuse(
+            fmt::format("begins at byte {}, but its bufferView has {} bytes", inner, length));
     }
     if (const auto given = view.find("byteStride"))
     {
@@ -178,7 +180,7 @@ void GltfAccessor::read_sparse(GltfFile& file)
         if (index >= count_ || (i > 0 && index <= whole_at(at - index_bytes, sparse_component_)))
         {
             indices.refuse(
-                fmt::format("[{}] is {}; they must rise and stay below {}", i, index, count_));
+                fmt::format("[{}] is {}; indices must increase and be below {}", i, index, count_));
         }
     }
 }
@@ -189,7 +191,8 @@ void GltfAccessor::require_indices() const
         component_ == Component::u8 || component_ == Component::u16 || component_ == Component::u32;
     if (width_ != 1 || !is_unsigned || is_normalized_)
     {
-        json_.refuse("can't be indices: they are SCALAR of componentType 5121, 5123 or 5125");
+        json_.refuse(
+            "can't be indices: indices must be SCALAR of componentType 5121, 5123 or 5125");
     }
 }
 
@@ -197,7 +200,7 @@ void GltfAccessor::require_positions(const GltfFile& file) const
 {
     if (width_ != 3 || component_ == Component::u32)
     {
-        json_.refuse("can't be positions: they are VEC3 of componentType 5126");
+        json_.refuse("can't be positions: positions must be VEC3 of componentType 5126");
     }
     const bool is_float = component_ == Component::f32 || component_ == Component::f64;
     if (!is_float && !file.requires_extension("KHR_mesh_quantization"))
@@ -231,7 +234,7 @@ std::uint32_t GltfAccessor::whole_at(const char* at, Component component)
     }
 }
 
-/// Bytes of an element; null if the element is 0.
+/// Bytes of element `i`; null if the element is 0.
 const char* GltfAccessor::element(std::size_t i) const
 {
     const std::size_t index_bytes = bytes_of(sparse_component_);
@@ -257,7 +260,7 @@ std::uint32_t GltfAccessor::index(std::size_t i) const
     return at == nullptr ? 0 : whole_at(at, component_);
 }
 
-/// Normalized signed integers range from -1 to 1, both included; the least value is -1, too.
+/// Decodes one number. Normalized signed integers are -1 to 1; the least integer also becomes -1.
 double GltfAccessor::number_at(const char* at) const
 {
     const auto scaled = [this](double value, double largest)

@@ -14,13 +14,13 @@
 namespace tactus::detail
 {
 
-/// Throws a refusal of compressed data, with a remedy; they are not decoded here.
+/// Throws a SceneFault about compressed data, which this reader does not decode, with a remedy.
 [[noreturn]] void refuse_compressed(const JsonAt& json, std::string_view extension);
 
 /// accessors[index] of a glTF file, of type SCALAR, VEC3 or VEC4: numbers in a buffer, with a
-/// stride and possibly some replaced ones (sparse). The constructor checks all bounds, at no cost
-/// for each element except for sparse ones; elements are decoded on access. The file must outlive
-/// the accessor. Functions throw a SceneFault.
+/// stride. A sparse accessor replaces single elements. The constructor checks all bounds, at no
+/// cost for each element except for sparse ones; elements are decoded on access. The file must
+/// outlive the accessor. Functions throw a SceneFault.
 class GltfAccessor
 {
 public:
@@ -49,7 +49,7 @@ public:
     }
 
 private:
-    /// Codes of the standard, which are those of OpenGL.
+    /// Types of a component, with the codes of the glTF standard, which are those of OpenGL.
     enum class Component : std::uint16_t
     {
         i8 = 5120,
@@ -78,12 +78,12 @@ private:
     std::size_t width_; ///< Numbers in an element: 1, 3 or 4.
     std::size_t count_;
     bool is_normalized_{false};
-    std::string_view base_; ///< Bytes from the first element on; empty: all elements are 0.
+    std::string_view base_; ///< Bytes from the first element on; empty if all elements are 0.
     std::size_t stride_{0};
     std::size_t sparse_count_{0};
     Component sparse_component_{Component::u8};
-    std::string_view sparse_indices_; ///< Indices, strictly ascending.
-    std::string_view sparse_values_;  ///< Elements, contiguous.
+    std::string_view sparse_indices_; ///< Indices of the replaced elements, strictly ascending.
+    std::string_view sparse_values_;  ///< Replacing elements, contiguous.
 };
 
 } // namespace tactus::detail

@@ -20,17 +20,17 @@ namespace
 
 using Use = ExtensionUse;
 
-constexpr std::string_view kLater = "moves or hides nodes later on; objects are as the file shows "
-                                    "them at first";
+constexpr std::string_view kLater =
+    "moves or hides nodes later; objects keep the first state in the file";
 constexpr std::string_view kSplats = "adds clouds of points, which have no surface";
-constexpr std::string_view kShapes = "adds shapes that are no meshes";
-constexpr std::string_view kFiner = "adds finer meshes from other files; those of this file are "
-                                    "touched";
-constexpr std::string_view kPlaces = "places the whole scene somewhere; its nodes stand as they do "
-                                     "among each other";
-constexpr std::string_view kStreams = "adds meshes that come as a stream";
-constexpr std::string_view kBodies = "adds bodies and moves nodes by them; the nodes' own meshes "
-                                     "are touched, where the file has them at first";
+constexpr std::string_view kShapes = "adds shapes that are not meshes";
+constexpr std::string_view kFiner =
+    "adds finer meshes from other files; the meshes of this file are touched";
+constexpr std::string_view kPlaces =
+    "places the whole scene in the world; the nodes keep their relative poses";
+constexpr std::string_view kStreams = "adds streamed meshes";
+constexpr std::string_view kBodies = "adds rigid bodies that move nodes; the nodes' own meshes are "
+                                     "touched, at their first poses in the file";
 
 constexpr auto kKnown = std::to_array<KnownExtension>({
     // Extensions that are read.
@@ -60,14 +60,14 @@ constexpr auto kKnown = std::to_array<KnownExtension>({
     {"KHR_gaussian_splatting", Use::named, kSplats},
     {"KHR_gaussian_splatting_", Use::named, kSplats},
     {"KHR_materials_displacement", Use::named,
-     "moves the surface by a picture; it is touched without"},
+     "moves the surface by a picture; the surface is touched without this"},
     {"EXT_geopose", Use::named, kPlaces},
     {"EXT_implicit_", Use::named, kShapes},
     {"EXT_mesh_lod", Use::named, kFiner},
     {"EXT_primitive_voxels", Use::named, kShapes},
     {"EXT_property_animation", Use::named, kLater},
     {"AGI_articulations", Use::vital,
-     "moves nodes to where its stages begin; nodes stand as without them"},
+     "moves nodes to the start of its stages; nodes keep their poses without it"},
     {"CESIUM_RTC", Use::named, kPlaces},
     {"CESIUM_geopose", Use::named, kPlaces},
     {"FB_asset_variants", Use::named, kFiner},
@@ -139,7 +139,7 @@ constexpr auto kKnown = std::to_array<KnownExtension>({
     {"NV_materials_mdl", Use::none, ""},
 });
 
-/// Number of places of an extension, and the first one.
+/// Number of places that use an extension, and the name of the first.
 struct Places
 {
     std::size_t count{0};
@@ -181,7 +181,8 @@ public:
     [[nodiscard]] const std::map<std::string, Places>& found() const noexcept { return found_; }
 
 private:
-    /// Member if it is an array, otherwise an empty one; the reader of the content refuses faults.
+    /// Member `key` of `thing` if it is an array, otherwise an empty array. Wrong types are refused
+    /// where the content is read.
     static const nlohmann::json& array_of(const nlohmann::json& thing, const char* key)
     {
         static const nlohmann::json kNone = nlohmann::json::array();
@@ -231,7 +232,7 @@ KnownExtension known_extension(std::string_view name)
     return known != kKnown.end()
                ? *known
                : KnownExtension{name, Use::vital,
-                                "is not known here; what it adds, moves or hides is not read"};
+                                "is unknown; its additions, motions and hidden nodes are not read"};
 }
 
 std::vector<std::string> required_extensions(const JsonAt& root)
@@ -246,7 +247,7 @@ std::vector<std::string> required_extensions(const JsonAt& root)
         if (known.use == Use::vital)
         {
             entry.refuse(fmt::format("is '{}', which is not supported: it {}; export without it, "
-                                     "or take it off that list where the surface doesn't need it",
+                                     "or remove it from this list if the surface doesn't need it",
                                      printable(name), known.left_out));
         }
         required.push_back(name);

@@ -16,20 +16,20 @@ namespace tactus::detail
 enum class ExtensionUse
 {
     none,  ///< Ignored: it changes and moves no surface (materials, lights, sounds, data).
-    read,  ///< Read, or refused at the mesh that requires it.
+    read,  ///< Read; the mesh that uses the extension is refused if it cannot be read.
     named, ///< Ignored with a note: it adds or moves something, the rest is unaffected.
     vital, ///< Ignored with a note, but a file that requires it is refused.
 };
 
 struct KnownExtension
 {
-    std::string_view name; ///< Name; with '_' at the end, a prefix.
+    std::string_view name; ///< Name; if it ends in '_', the prefix of several names.
     ExtensionUse use;
-    std::string_view left_out; ///< Text about the ignored content; empty: nothing.
+    std::string_view left_out; ///< Text about the ignored content; empty if nothing is ignored.
 };
 
-/// Extensions of Khronos' list, drafts included, and some more that occur in files. The first that
-/// matches a name counts.
+/// Extensions of Khronos' list, drafts included, and some more that occur in files. The first entry
+/// that matches a name applies.
 [[nodiscard]] std::span<const KnownExtension> known_extensions() noexcept;
 
 /// Treatment of an extension; an unknown one is vital.

@@ -3,6 +3,7 @@
 #include "host_tools/scene/detail/gltf_file.hpp"
 
 #include "host_tools/scene/detail/gltf_extensions.hpp"
+#include "transport/base/counted.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/read_file.hpp"
 
@@ -130,7 +131,7 @@ void GltfFile::take_chunks(std::string_view bytes)
         u32_at(bytes, 8) < kGlbHeaderBytes)
     {
         throw SceneFault{
-            fmt::format("is no whole GLB: it has {} bytes, its header says {}", bytes.size(),
+            fmt::format("is an incomplete GLB: it has {} bytes, its header states {}", bytes.size(),
                         bytes.size() < kGlbHeaderBytes ? kGlbHeaderBytes : u32_at(bytes, 8))};
     }
     if (u32_at(bytes, 4) != 2)
@@ -140,7 +141,7 @@ void GltfFile::take_chunks(std::string_view bytes)
     }
     if (const std::size_t tail = bytes.size() - u32_at(bytes, 8); tail > 0)
     {
-        notes_.push_back(fmt::format("{} bytes behind the end of the GLB left out", tail));
+        notes_.push_back(counted(tail, "byte") + " after the end of the GLB left out");
         bytes.remove_suffix(tail);
     }
     std::size_t at = kGlbHeaderBytes;
@@ -150,7 +151,7 @@ void GltfFile::take_chunks(std::string_view bytes)
         if (left < kChunkHeaderBytes || u32_at(bytes, at) > left - kChunkHeaderBytes)
         {
             throw SceneFault{
-                fmt::format("chunk {} of the GLB, at byte {}, goes beyond its end", number, at)};
+                fmt::format("chunk {} of the GLB, at byte {}, extends beyond its end", number, at)};
         }
         const std::uint32_t type = u32_at(bytes, at + 4);
         const auto chunk = bytes.substr(at + kChunkHeaderBytes, u32_at(bytes, at));
@@ -199,12 +200,12 @@ std::string_view GltfFile::buffer(std::size_t index)
         std::string loaded = load(buffer, index, length);
         if (loaded.size() < length)
         {
-            buffer.refuse(
-                fmt::format("has {} bytes; its byteLength says {}", loaded.size(), length));
+            buffer.refuse(fmt::format("has {} bytes; its byteLength is {}", loaded.size(), length));
         }
         if (length > kMaxGltfBytes - buffer_bytes_)
         {
-            buffer.refuse(fmt::format("brings the buffers above {} bytes", kMaxGltfBytes));
+            buffer.refuse(
+                fmt::format("exceeds the limit of {} bytes for all buffers", kMaxGltfBytes));
         }
         loaded.resize(length);
         buffer_bytes_ += length;
@@ -220,7 +221,7 @@ std::string GltfFile::load(const JsonAt& buffer, std::size_t index, std::uint64_
     {
         if (index != 0 || !binary_)
         {
-            buffer.refuse("has no 'uri', and the file no binary chunk for it");
+            buffer.refuse("has no 'uri', and the file has no binary chunk for it");
         }
         return *binary_;
     }
@@ -238,8 +239,8 @@ std::string GltfFile::load(const JsonAt& buffer, std::size_t index, std::uint64_
     return std::move(bytes).value();
 }
 
-/// File that a URI names, as the standard reads it. If it does not exist: as some programs write
-/// it, unescaped and with backslashes between folders.
+/// Relative name of the file that a URI names by the standard. If it does not exist, the URI is
+/// read as some programs write it: without escapes, or with backslashes between folders.
 std::string GltfFile::file_of(const JsonAt& uri) const
 {
     const std::string& text = uri.text();

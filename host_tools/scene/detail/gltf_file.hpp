@@ -42,8 +42,8 @@ public:
     /// True if buffers[index] states where its bytes are.
     [[nodiscard]] bool has_buffer(std::size_t index) const;
 
-    /// Bytes of buffers[index], as many as its byteLength: from the file's own binary chunk, a data
-    /// URI or a file beside it. Read at the first call, then kept.
+    /// Bytes of buffers[index], as many as its byteLength: from the binary chunk of a GLB, a data
+    /// URI or another file. Read at the first call, then kept.
     [[nodiscard]] std::string_view buffer(std::size_t index);
 
     /// Bytes of all buffers read so far.

@@ -32,8 +32,8 @@ constexpr std::size_t kTriangles = 4;
 constexpr std::size_t kStrip = 5;
 constexpr std::uint64_t kAnyMode = 0xFFFF'FFFF;
 
-/// Elements that cost as much as one read: the map from elements to vertices takes 4 bytes for each
-/// element of the accessor.
+/// Number of elements of a new accessor that count as one read: its map from elements to vertices
+/// takes 4 bytes for each.
 constexpr std::uint64_t kElementsPerRead = 16;
 constexpr std::uint32_t kUnseen = 0xFFFF'FFFF;
 
@@ -56,13 +56,13 @@ void refuse_what_moves(const JsonAt& primitive)
 {
     if (primitive.size_of("targets") > 0)
     {
-        primitive.refuse("has morph targets; a model keeps its shape: apply or remove them in the "
-                         "modeller (in Blender shape keys), or leave the node out by "
-                         "extras.tactus.touch = false");
+        primitive.refuse(
+            "has morph targets; a model is rigid: apply or remove them in the modeller (in Blender "
+            "shape keys), or exclude the node by extras.tactus.touch = false");
     }
 }
 
-/// Refuses a compressed primitive. It has an uncompressed form too, unless the file requires the
+/// Refuses a compressed primitive if it has no uncompressed form, that is, if the file requires the
 /// extension or the accessor has no data.
 void refuse_what_is_compressed(const GltfFile& file, const JsonAt& primitive, std::size_t positions)
 {
@@ -92,7 +92,7 @@ std::string why_no_surface(const GltfFile& file, const JsonAt& primitive)
 {
     if (is_of_an_extension(primitive))
     {
-        return "of an extension's own mode";
+        return "in a mode of an extension";
     }
     const std::size_t mode = mode_of(primitive);
     if (mode < kTriangles)
@@ -134,8 +134,9 @@ class MeshBuilder
 public:
     explicit MeshBuilder(GltfFile& file) : file_(file) {}
 
-    /// Adds a primitive. `charge` receives the work ahead, and may throw. Returns the reason why
-    /// the primitive has no surface and is ignored; empty otherwise.
+    /// Adds a primitive, or returns the reason why it has no surface and is ignored; empty if
+    /// added. `charge` is called with the number of reads before the elements are read. If it
+    /// throws, the builder must be discarded.
     template <typename Charge>
     [[nodiscard]] std::string add(const JsonAt& primitive, const Charge& charge)
     {
@@ -170,7 +171,8 @@ public:
         const std::size_t faces = faces_of(mode, corners);
         if (faces > kMaxFaces - mesh_.faces.size())
         {
-            primitive.refuse(fmt::format("brings its mesh above {} faces (2^29)", kMaxFaces));
+            primitive.refuse(
+                fmt::format("exceeds the limit of {} faces of a mesh (2^29)", kMaxFaces));
         }
         if (is_new)
         {
@@ -209,7 +211,7 @@ private:
 
     GltfFile& file_;
     TriangleMesh mesh_;
-    /// Vertices of each accessor's elements, by accessor.
+    /// Vertex of each element, by accessor; kUnseen for unused elements.
     std::map<std::size_t, std::vector<std::uint32_t>> vertices_;
 };
 
@@ -256,7 +258,7 @@ SceneMesh GltfMeshes::read(std::size_t index)
         const JsonAt mesh = file_.root().at("meshes").at(index);
         const std::size_t count = mesh.size_of("primitives");
         MeshBuilder builder(file_);
-        std::map<std::string, std::size_t> left_out; // Counts by reason.
+        std::map<std::string, std::size_t> left_out; // Number of ignored primitives, by reason.
         for (std::size_t i = 0; i < count; ++i)
         {
             const JsonAt primitive = mesh.at("primitives").at(i);
@@ -278,8 +280,8 @@ void GltfMeshes::charge(std::uint64_t reads, const JsonAt& primitive)
     const std::uint64_t most = kFreeReads + kReadsPerByte * file_.buffer_bytes();
     if (reads > most - reads_)
     {
-        primitive.refuse(fmt::format("brings what meshes read above {} elements, {} for each byte "
-                                     "of the buffers",
+        primitive.refuse(fmt::format("exceeds the limit of {} elements that meshes may read, {} "
+                                     "for each byte of the buffers",
                                      most, kReadsPerByte));
     }
     reads_ += reads;

@@ -11,9 +11,9 @@
 namespace tactus::detail
 {
 
-/// Limit of reads of buffers by a file's meshes: this many elements of accessors for each byte, and
-/// a million more. Meshes may share accessors, and a small file must not expand to gigabytes of
-/// triangles.
+/// Limit of the accessor elements that all meshes of a file read: kReadsPerByte for each byte of
+/// the buffers read so far, plus kFreeReads. Meshes may share accessors, and a small file must not
+/// expand to gigabytes of triangles.
 inline constexpr std::uint64_t kReadsPerByte = 64;
 inline constexpr std::uint64_t kFreeReads = 1'000'000;
 
@@ -21,7 +21,7 @@ inline constexpr std::uint64_t kFreeReads = 1'000'000;
 class GltfMeshes
 {
 public:
-    /// `file` must outlive it.
+    /// `file` must outlive the object.
     explicit GltfMeshes(GltfFile& file) : file_(file) {}
 
     /// All triangles of meshes[index], with the positions that they use, in the mesh's own frame.

@@ -31,17 +31,17 @@ namespace
 /// files have single precision, and rounding accumulates along a chain of parents.
 constexpr double kShapeTolerance = 1e-5;
 
-/// Tolerance for instances, whose rotations may be normalized integers of 8 bits.
+/// Tolerance of the length of an instance's quaternion, which may consist of normalized 8-bit
+/// integers.
 constexpr double kInstanceUnitTolerance = 0.02;
 
 constexpr std::size_t kNoParent = std::numeric_limits<std::size_t>::max();
 constexpr std::string_view kModelExtension = ".spm";
 /// Remedies for a node that cannot be touched as it is.
-constexpr std::string_view kLeaveOut = "or leave it out by extras.tactus.touch = false";
+constexpr std::string_view kLeaveOut = "or exclude it by extras.tactus.touch = false";
 constexpr std::string_view kKeep = "extras.tactus.touch = true keeps it";
 
-/// Affine map: there = linear x here + translation; from a node's frame to its parent's, or to the
-/// world.
+/// Affine map p -> linear x p + translation, from a node's frame to its parent's or to the world.
 struct Affine
 {
     Mat3 linear{Mat3::Identity()};
@@ -58,7 +58,7 @@ std::array<double, N> numbers(const JsonAt& json)
 {
     if (json.size() != N)
     {
-        json.refuse(fmt::format("has {} numbers and needs {}", json.size(), N));
+        json.refuse(fmt::format("has {} numbers; {} are needed", json.size(), N));
     }
     std::array<double, N> values{};
     for (std::size_t i = 0; i < N; ++i)
@@ -88,7 +88,8 @@ Affine read_matrix(const JsonAt& json)
     return affine;
 }
 
-/// Rotation of a quaternion; `json` is the place for messages.
+/// Rotation of a quaternion, whose length must be 1 within `tolerance`; `json` is named in
+/// refusals.
 Mat3 rotation_of(const std::array<double, 4>& quaternion, const JsonAt& json, double tolerance)
 {
     const auto [x, y, z, w] = quaternion;
@@ -203,7 +204,8 @@ private:
         }
         const auto lost =
             static_cast<std::size_t>(std::ranges::find(is_reached, false) - is_reached.begin());
-        // The first node may be below the cycle; after this many steps it is in it.
+        // The first lost node may be below the cycle; its ancestor after this number of steps is in
+        // the cycle.
         std::size_t node = lost;
         for (std::size_t i = 0; i < parents_.size(); ++i)
         {
@@ -217,7 +219,7 @@ private:
     std::vector<std::size_t> order_;
 };
 
-/// Nodes that the file's scene shows: its roots and all nodes below them.
+/// Flags by node: true if the file's scene shows it, that is, for its roots and all nodes below.
 std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
 {
     const JsonAt root = file.root();
@@ -235,7 +237,7 @@ std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
         const std::size_t node = list->at(i).index_below(is_shown.size(), "nodes");
         if (tree.parent(node) != kNoParent)
         {
-            list->at(i).refuse(fmt::format("is {}, which is a child of nodes[{}], no root",
+            list->at(i).refuse(fmt::format("is {}, which is a child of nodes[{}], not a root",
                                            file.described("nodes", node), tree.parent(node)));
         }
         is_shown[node] = true;
@@ -248,7 +250,7 @@ std::vector<bool> find_shown(const GltfFile& file, const NodeTree& tree)
     return is_shown;
 }
 
-/// Reasons why nodes of the scene are invisible; empty for visible ones.
+/// Reason why each node is invisible; empty for a visible node.
 class HiddenNodes
 {
 public:
@@ -292,7 +294,7 @@ private:
         }
     }
 
-    std::vector<std::string_view> reasons_; ///< Reasons by node.
+    std::vector<std::string_view> reasons_; ///< Reason by node; empty for a visible node.
 };
 
 Material read_material(const JsonAt& json)
@@ -319,9 +321,9 @@ std::string read_model(const JsonAt& json)
     if (!name.ends_with(kModelExtension) ||
         !is_valid_name(std::string_view(name).substr(0, name.size() - kModelExtension.size())))
     {
-        json.refuse(fmt::format("is '{}'; must be an .spm in the scene file's folder with a name "
-                                "of {}",
-                                printable(name), kNameForm));
+        json.refuse(fmt::format(
+            "is '{}'; must be an .spm file in the scene file's folder with a name of {}",
+            printable(name), kNameForm));
     }
     return name;
 }
@@ -350,7 +352,7 @@ bool read_extras(const JsonAt& node, SceneObject& object)
     return touch && object.is_touched;
 }
 
-/// Scale moved into the range if only rounding put it outside: 0.001 as a float is a little below.
+/// Scale, moved to the nearest end of the allowed range if it is outside by rounding only.
 double rounded_into_range(double scale)
 {
     const double nearest = std::clamp(scale, kPoseScaleMin, kPoseScaleMax);
@@ -364,7 +366,7 @@ bool leaves_no_surface(const Mat3& linear)
     return axes[1] <= kShapeTolerance * kShapeTolerance * axes[0];
 }
 
-/// Sets the pose from the node's place, which must be a similarity, mirrored or not.
+/// Sets the pose from the node's map to the world, which must be a similarity, mirrored or not.
 void set_pose(const Affine& world, SceneObject& object)
 {
     const auto refuse = [&](const std::string& what, std::string_view way)
@@ -381,12 +383,12 @@ void set_pose(const Affine& world, SceneObject& object)
     const double scale = lengths.mean();
     if (!(lengths.minCoeff() > 0.0))
     {
-        refuse("has a scale of 0 along an axis; a model keeps its shape", kApply);
+        refuse("has a scale of 0 along an axis; a model is rigid", kApply);
     }
     if (lengths.maxCoeff() - lengths.minCoeff() > 2.0 * kShapeTolerance * scale)
     {
-        refuse(fmt::format("scales its axes by {:.6g}, {:.6g} and {:.6g}; a model keeps its shape, "
-                           "so they must be equal",
+        refuse(fmt::format("scales its axes by {:.6g}, {:.6g} and {:.6g}; a model is rigid, so the "
+                           "scales must be equal",
                            lengths.x(), lengths.y(), lengths.z()),
                kApply);
     }
@@ -394,7 +396,7 @@ void set_pose(const Affine& world, SceneObject& object)
     const Mat3 product = rotation.transpose() * rotation;
     if ((product - Mat3::Identity()).cwiseAbs().maxCoeff() > 4.0 * kShapeTolerance)
     {
-        refuse("has axes that are not perpendicular; a model keeps its shape",
+        refuse("has axes that are not perpendicular; a model is rigid",
                "apply its transform, and those of its parents, to the mesh in the modeller");
     }
     const Eigen::Quaterniond turn = Eigen::Quaterniond(rotation).normalized();
@@ -405,7 +407,7 @@ void set_pose(const Affine& world, SceneObject& object)
     {
         if (checked.error() == PoseRefusal::translation)
         {
-            refuse(fmt::format("stands farther than {} m from the origin along an axis",
+            refuse(fmt::format("lies farther than {} m from the origin along an axis",
                                kPoseReachMax_m),
                    "move the scene to its origin in the modeller");
         }
@@ -415,8 +417,8 @@ void set_pose(const Affine& world, SceneObject& object)
     }
     if (is_mirrored && !object.model.empty())
     {
-        refuse("mirrors its model; that would be another model",
-               "mirror the mesh and make a model of it");
+        refuse("mirrors its model, which is not supported",
+               "mirror the mesh and build a model from the mirrored mesh");
     }
     if (object.mesh)
     {
@@ -424,7 +426,7 @@ void set_pose(const Affine& world, SceneObject& object)
     }
 }
 
-/// A node that is an object, or several objects through its instances.
+/// A node that is one object, or one object for each of its instances.
 struct ObjectNode
 {
     std::size_t node{0};
@@ -454,9 +456,9 @@ std::optional<ObjectNode> read_object(const GltfFile& file, std::size_t index,
     }
     if (node.find("skin") && object.is_touched && object.model.empty())
     {
-        throw SceneFault{fmt::format("{} has a skin; a model keeps its shape: apply the armature "
-                                     "to the mesh in the modeller, {}",
-                                     object.place, kLeaveOut)};
+        throw SceneFault{fmt::format(
+            "{} has a skin; a model is rigid: apply the armature to the mesh in the modeller, {}",
+            object.place, kLeaveOut)};
     }
     const std::string name = plain_name(node.name());
     object.name = name.empty() ? "node" + std::to_string(index) : name;
@@ -467,7 +469,8 @@ std::optional<ObjectNode> read_object(const GltfFile& file, std::size_t index,
     return ObjectNode{index, std::move(object)};
 }
 
-/// Maps of a node's instances in its frame (EXT_mesh_gpu_instancing).
+/// Maps from each instance's frame to the node's (EXT_mesh_gpu_instancing); none if the node has no
+/// instances.
 std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t index)
 {
     const JsonAt node = file.root().at("nodes").at(index);
@@ -492,7 +495,7 @@ std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t in
         if (count != 0 && values.count() != count)
         {
             number->refuse(
-                fmt::format("has {} instances, another attribute {}", values.count(), count));
+                fmt::format("has {} instances; another attribute has {}", values.count(), count));
         }
         count = values.count();
         return values;
@@ -503,11 +506,11 @@ std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t in
     if (count > kMaxObjects)
     {
         attributes->refuse(
-            fmt::format("are of {} instances; at most {} objects are allowed", count, kMaxObjects));
+            fmt::format("have {} instances; at most {} objects are allowed", count, kMaxObjects));
     }
     if (count == 0)
     {
-        return std::nullopt; // The extension has no instances.
+        return std::nullopt; // The extension lists no instances.
     }
     std::vector<Affine> instances(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -530,7 +533,7 @@ std::optional<std::vector<Affine>> read_instances(GltfFile& file, std::size_t in
     return instances;
 }
 
-/// Places of the marked nodes and of their parents in the world.
+/// Maps to the world, by node; set for the marked nodes and their ancestors only.
 std::vector<Affine> place_nodes(const GltfFile& file, const NodeTree& tree,
                                 std::vector<bool> is_needed)
 {
@@ -555,7 +558,7 @@ std::vector<Affine> place_nodes(const GltfFile& file, const NodeTree& tree,
     return worlds;
 }
 
-/// Objects with their names and poses, in their order.
+/// Collects objects in order; checks their number and poses, and makes their names unique.
 class ObjectList
 {
 public:
@@ -565,14 +568,14 @@ public:
     {
         if (objects_.size() == kMaxObjects)
         {
-            throw SceneFault{fmt::format("has more than {} objects; join some in the modeller, {}",
-                                         kMaxObjects, kLeaveOut)};
+            throw SceneFault{fmt::format("has more than {} objects; join some in the modeller, or "
+                                         "exclude some by extras.tactus.touch = false",
+                                         kMaxObjects)};
         }
         if (object.is_touched && (!world.linear.allFinite() || !world.translation.allFinite()))
         {
             throw SceneFault{object.place +
-                             " stands nowhere: with its parents' transforms a number is not "
-                             "finite"};
+                             " has no finite pose in the world, with its parents' transforms"};
         }
         if (object.is_touched && leaves_no_surface(world.linear))
         {

@@ -17,7 +17,8 @@ namespace
 
 using nlohmann::json;
 
-/// Checks a text without storing it, so that a text beyond the bounds is refused first.
+/// Counts the values of a text without storing them, so that a text beyond the bounds is refused
+/// before it is parsed.
 class BoundsCheck final : public nlohmann::json_sax<json>
 {
 public:
@@ -45,7 +46,7 @@ public:
                      const nlohmann::detail::exception& /*error*/) override
     {
         fault_ = position > bytes_ ? fmt::format("the JSON ends too early, at byte {}", bytes_)
-                                   : fmt::format("is no JSON at byte {}, behind '{}'", position,
+                                   : fmt::format("is not JSON at byte {}, after '{}'", position,
                                                  printable(last_token, 24));
         return false;
     }
@@ -188,7 +189,7 @@ std::size_t JsonAt::index_below(std::size_t count, std::string_view what) const
 {
     if (!value_->is_number_unsigned() || value_->get<std::uint64_t>() >= count)
     {
-        refuse(fmt::format("names none of the {} {}", count, what));
+        refuse(fmt::format("must be a whole number below {}, the count of {}", count, what));
     }
     return value_->get<std::size_t>();
 }
@@ -204,7 +205,8 @@ void JsonAt::require_keys_among(std::string_view keys) const
     {
         if (known.find(fmt::format(" {} ", member.key())) == std::string::npos)
         {
-            refuse(fmt::format("knows no '{}'; known are {}", printable(member.key()), keys));
+            refuse(fmt::format("has an unknown key '{}'; known keys are {}",
+                               printable(member.key()), keys));
         }
     }
 }

@@ -20,7 +20,8 @@ struct SceneFault
     std::string text;
 };
 
-/// Bounds of a file's JSON. They limit the cost of values of a few bytes: some 100 bytes each.
+/// Maximum number and nesting depth of a file's JSON values. A value of a few bytes of text takes
+/// about 100 bytes of memory.
 inline constexpr std::size_t kMaxJsonValues = 4'000'000;
 inline constexpr std::size_t kMaxJsonDepth = 64;
 
@@ -30,7 +31,7 @@ inline constexpr std::size_t kMaxJsonDepth = 64;
 
 /// A value of a JSON document and its place there, such as "nodes[3].mesh". Each function throws a
 /// SceneFault that begins with the place if the value is of another kind. The document must outlive
-/// it.
+/// the JsonAt.
 class JsonAt
 {
 public:
@@ -65,7 +66,7 @@ public:
 
 private:
     const nlohmann::json* value_;
-    std::string place_; ///< Place; empty: the whole document.
+    std::string place_; ///< Place; empty for the whole document.
 };
 
 } // namespace tactus::detail

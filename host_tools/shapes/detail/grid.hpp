@@ -10,8 +10,8 @@ namespace tactus::detail
 {
 
 /// Two triangles for each cell of a columns x rows grid of vertices, which are the mesh's first
-/// ones. An axis may wrap. Faces turn from the column axis to the row axis. `columns` and `rows`
-/// count vertices, so an axis that does not wrap has one cell less.
+/// ones. An axis may wrap. A face's normal is the cross product of column axis and row axis.
+/// `columns` and `rows` count vertices, so an axis that does not wrap has one cell less.
 struct Grid
 {
     std::uint32_t columns{0};

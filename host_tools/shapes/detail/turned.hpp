@@ -17,10 +17,10 @@ struct OutlinePoint
     double z_m{0.0};
 };
 
-/// Solid of revolution of an outline. Its first and last corners are on the axis, the first one
-/// below; the outside lies on its right. Between them it is cut into `rings` circles of `segments`
-/// vertices each, one at each corner: 2 x segments x rings faces. `rings` is at least the number of
-/// corners between the ends, `segments` at least 3.
+/// Solid of revolution of an outline. The outline's first and last corners are on the axis, the
+/// first below the last; the outside lies on the right. Between these corners it gets `rings`
+/// circles of `segments` vertices each, including one circle at each corner: 2 x segments x rings
+/// faces. `rings` is at least the number of corners between the ends, `segments` at least 3.
 [[nodiscard]] TriangleMesh make_turned(std::span<const OutlinePoint> outline,
                                        std::uint32_t segments, std::uint32_t rings);
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// States of the last minute, ordered by time.
+/// States of the last minute, ascending by time.
 export class History {
   constructor(longest_s = 60) {
     this.longest_s = longest_s;
     this.entries = [];
   }
 
-  /// Adds a state and removes later ones, since a recording may be played again.
+  /// Adds a state and removes those at the same or later times, since a recording may be played
+  /// again.
   add(state, at_s) {
     while (this.entries.length > 0 && this.entries[this.entries.length - 1].at_s >= at_s) {
       this.entries.pop();
@@ -26,7 +27,7 @@ export class History {
     this.entries = [];
   }
 
-  /// The last state at that time, or the oldest one; null if there is none.
+  /// Newest state not after `time_s`; the oldest state if all are after; null if there is none.
   at(time_s) {
     let found = null;
     for (const entry of this.entries) {

@@ -2,17 +2,18 @@
 // Copyright the Tactus authors.
 
 const TICK_MS = 40;
-/// Number of moments of a minute that plots show after a jump.
+/// Number of states, over the last minute, that are fetched for the plots after a jump.
 const MOMENTS = 120;
 
-/// Plays recordings: the current frame and the speed. Frames are requested one at a time, so a slow
-/// machine shows fewer of them.
+/// Plays recordings: has the present frame and the speed. One frame is requested at a time, so a
+/// slow machine skips frames.
 export class Player {
-  /// `take(states, is_leap)` receives the states up to the current frame.
+  /// Calls `take(states, is_leap, fault)` with the states up to the present frame; after a jump
+  /// (`is_leap`) those of the last minute.
   constructor(film, take) {
     this.film = film;
     this.take = take;
-    this.place = 0; // Frame number; its fraction is progress to the next one.
+    this.place = 0; // Number of the frame, plus the elapsed part of the frame.
     this.shown = -1;
     this.speed = 1;
     this.plays = false;
@@ -36,7 +37,7 @@ export class Player {
       this.go_to(0);
     }
   }
-  /// Moves to a frame and restarts the plots.
+  /// Jumps to a frame; the plots are filled again.
   go_to(frame) {
     this.place = Math.min(Math.max(frame, 0), this.film.frames - 1);
     this.leap = true;

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 /* global Dygraph */
 
-/// Interval between two points of a line.
+/// Shortest time between two points of a plot.
 const STEP_S = 0.1;
 
 const norm = (v) => Math.hypot(v[0], v[1], v[2]);
@@ -18,7 +18,7 @@ const times = (controller, names) =>
   names.map((name) => (controller.front && controller.front.times_us ?
     controller.front.times_us[name][0] : null));
 
-/// Values that each plot shows of a state with a controller; null: no value.
+/// Plots, each with a function from a controller's state to its values; null: no value.
 const PLOTS = [
   {
     title: "stages, µs (mean)", labels: ["T_L", "T_R", "T_B", "T_Q", "force"],
@@ -41,7 +41,7 @@ const PLOTS = [
     }),
   },
   {
-    title: "budgets a frame", labels: ["splits", "merges", "nodes / 10"],
+    title: "budgets per frame", labels: ["splits", "merges", "nodes / 10"],
     values: (c) => (c.front ?
       [c.front.budgets.splits, c.front.budgets.merges, c.front.budgets.nodes / 10] :
       [null, null, null]),
@@ -58,7 +58,7 @@ Dygraph.PLUGINS = Dygraph.PLUGINS.filter((plugin) => plugin !== Dygraph.Plugins.
 
 const LINES_MAX = 5;
 
-/// Colours of charts in the current theme.
+/// Colours of plots in the present theme of the page.
 function colours() {
   const style = getComputedStyle(document.documentElement);
   const value = (name) => style.getPropertyValue(name).trim();
@@ -69,7 +69,7 @@ function colours() {
   };
 }
 
-/// Legend: each name in its colour, with the newest value.
+/// Shows the legend of a plot: each name in its colour, with the newest value.
 function show_names(parent, labels, row) {
   parent.replaceChildren(...labels.map((label, i) => {
     const name = document.createElement("span");
@@ -80,7 +80,7 @@ function show_names(parent, labels, row) {
   }));
 }
 
-/// Time series of the last minute, seconds before the newest.
+/// Plots of the last minute; times are in seconds before the newest.
 export class Plots {
   constructor(parent) {
     this.parent = parent;
@@ -114,7 +114,7 @@ export class Plots {
     return { plot, graph, names };
   }
 
-  /// Draws the minute before `end_s`, the present time of the page's clock or the selected moment.
+  /// Draws the minute before `end_s`, the present or the chosen moment on the page's clock.
   show(entries, tool, end_s) {
     const shown = [];
     for (const entry of entries) {
@@ -133,7 +133,7 @@ export class Plots {
     }
   }
 
-  /// Redraws after a change of the page's colours.
+  /// Takes the colours of the page's theme after it changed.
   take_colours() {
     for (const { graph } of this.graphs) {
       graph.updateOptions(colours());

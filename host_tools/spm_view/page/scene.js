@@ -4,11 +4,11 @@
 
 const RAMP = [[168, 178, 196], [96, 146, 208], [46, 168, 158], [244, 190, 66], [222, 88, 62]];
 
-/// Time of a picture beyond which the following ones are coarser.
+/// Time of drawing a picture above which the following ones have fewer pixels.
 const SLOW_MS = 100;
 const LEAST_PIXEL_RATIO = 0.5;
 
-/// Colour scale: 0 .. 1 to red, green, blue of 0 .. 1.
+/// Colour scale: maps 0 to 1 to [red, green, blue], each 0 to 1.
 export function ramp(share) {
   const place = Math.min(Math.max(share, 0), 1) * (RAMP.length - 1);
   const left = Math.min(Math.floor(place), RAMP.length - 2);
@@ -34,7 +34,8 @@ export function read_cut(buffer) {
   };
 }
 
-/// Decodes the answer of /boxes, /loaded or /requested (host_tools/spm_view/boxes.hpp) to edges.
+/// Decodes the answer of /boxes, /loaded or /requested (host_tools/spm_view/boxes.hpp) to line
+/// ends.
 export function read_boxes(buffer) {
   const count = new Uint32Array(buffer, 0, 1)[0];
   const ends = new Float32Array(buffer, 4, 6 * count);
@@ -60,7 +61,7 @@ export function read_boxes(buffer) {
   return { geometry, count };
 }
 
-/// Sets of boxes on a model that are shown on demand, with their source and colour.
+/// Kinds of boxes that a user may show on a model: path of the request, colour, and parameters.
 const BOX_SETS = [
   { name: "boxes", colour: 0x3b78d8, wanted: (choice) => choice.level !== "",
     state: (cut) => cut.cut, more: (choice) => ({ level: choice.level }) },
@@ -70,18 +71,18 @@ const BOX_SETS = [
     state: (cut, front) => (cut.requested > 0 ? front.serial : "none"), more: () => ({}) },
 ];
 
-/// Regions in which chunks are searched, around the present or the predicted place of a tool.
+/// Colours of the spheres in which chunks are searched, around a tool's present or predicted place.
 const REGION_COLOURS = { present: 0xc94c4c, predicted: 0xa855c7 };
 const REGION_BALL = new THREE.WireframeGeometry(new THREE.IcosahedronBufferGeometry(1, 1));
 
-/// Values of a face, 0 (coarse) to 1 (fine), and texts for the ends of the scale.
+/// Values for the colours of faces, 0 (coarse) to 1 (fine), and texts for both ends of the scale.
 function scale_of(cut, by) {
   if (by === "error") {
     let most = 0;
     for (const error of cut.errors) {
       most = Math.max(most, error);
     }
-    const span = 3; // Decades.
+    const span = 3; // Decades of the error between the ends.
     return {
       share: (i) => (cut.errors[i] === 0 ? 1 :
         -Math.log10(cut.errors[i] / most) / span * 0.85),
@@ -95,7 +96,7 @@ function scale_of(cut, by) {
   return { share: (i) => cut.levels[i] / most, least: "base", most: `level ${most}` };
 }
 
-/// Geometry in which each face has its own three corners, and thus its own colour.
+/// Geometry with three vertices for each face, so that each face has one colour.
 function geometry_of(cut, by) {
   const positions = new Float32Array(9 * cut.faces);
   const colours = new Float32Array(9 * cut.faces);
@@ -119,7 +120,7 @@ function geometry_of(cut, by) {
 const vector = (v) => new THREE.Vector3(v[0], v[1], v[2]);
 const turn = (q) => new THREE.Quaternion(q[0], q[1], q[2], q[3]);
 
-/// Geometry of a shape in the form of hrtc's --tool; otherwise a sphere of the tool's radius.
+/// Geometry of a tool in the form of hrtc's --tool option; a sphere if the form is unknown.
 function tool_geometry(shape, radius_m) {
   const [kind, numbers] = (shape || "").split(":");
   const sizes = (numbers || "").split(",").map(Number);
@@ -143,7 +144,7 @@ function tool_geometry(shape, radius_m) {
   return new THREE.SphereBufferGeometry(radius, 28, 18);
 }
 
-/// One tool: the device as a ghost, the proxy, the force and the nearest points.
+/// Marks of one tool: the device's pose (transparent), the proxy, the force and the nearest points.
 class ToolMarks {
   constructor(scene) {
     this.group = new THREE.Group();
@@ -190,7 +191,7 @@ class ToolMarks {
   }
 }
 
-/// Scene for a browser without WebGL: everything else works.
+/// Empty view for a browser without WebGL; the rest of the page works.
 export class NoView {
   show() {}
   recolour() {}
@@ -203,7 +204,7 @@ export class NoView {
   }
 }
 
-/// The surface as the controller has it, and its tools.
+/// 3D view of the controller's surfaces and tools.
 export class View {
   constructor(canvas, on_change) {
     this.canvas = canvas;
@@ -220,7 +221,7 @@ export class View {
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
     this.controls.addEventListener("start", () => { this.is_fitting = false; });
-    this.is_fitting = true; // Fits the view to the model until the user moves it.
+    this.is_fitting = true; // True until the user moves the view; resizing then fits it.
     this.models = new Map(); // Models by hash: {cut, wanted, data, geometry, scale, fault}.
     this.objects = new Map();
     this.tools = [];
@@ -231,23 +232,23 @@ export class View {
     this.edges = true;
     this.is_fitted = false;
     this.is_drawing = false;
-    this.is_wanted = false; // A further picture is needed after the present one.
+    this.is_wanted = false; // True if another picture is needed after the present one.
     this.rest_ms = 0;
     this.radius_m = 0.1;
-    this.regions = null; // Number of regions shown, by kind.
-    this.followed = null; // Number of the followed tool.
+    this.regions = null; // Numbers of regions by kind; null: none are shown.
+    this.followed = null; // Number of the tool that the view follows; null: none.
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
   }
 
-  /// `choice`: {object, tool, shells, level, regions}.
+  /// Shows a controller's state. `choice` is {object, tool, shells, level, regions}.
   show(controller, choice) {
     const front = controller && controller.front;
     if (!front) {
-      this.models.forEach((model) => { model.fault = ""; }); // Faults end with the controller.
+      this.models.forEach((model) => { model.fault = ""; }); // Faults refer to a controller.
     }
     const seen = new Set();
     for (const object of front ? front.objects : []) {
-      const key = `${object.host}/${object.object}`;
+      const key = `${object.server}/${object.object}`;
       const cut = front.models.find((model) => model.hash === object.model);
       seen.add(key);
       this.want(controller, front, object.model, cut);
@@ -294,7 +295,8 @@ export class View {
     this.go_along();
   }
 
-  /// Fetches the model's faces if those shown are outdated; one request at a time.
+  /// Fetches the model's faces if the shown ones are outdated; one request at a time for each
+  /// model.
   want(controller, front, hash, cut) {
     const model = this.models.get(hash) || { cut: null, busy: false, fault: "" };
     this.models.set(hash, model);
@@ -327,7 +329,7 @@ export class View {
       });
   }
 
-  /// Fetches the selected boxes of the model; one set of a kind at a time.
+  /// Fetches the chosen boxes of the model; one request at a time for each kind.
   want_boxes(controller, front, hash, cut, choice) {
     const model = this.models.get(hash);
     model.boxes = model.boxes || BOX_SETS.map(() => ({ key: null, busy: false, geometry: null }));
@@ -420,7 +422,7 @@ export class View {
     mesh.scale.setScalar(object.scale);
   }
 
-  /// Spheres on an object, one for each region.
+  /// Draws one sphere on an object for each of its regions.
   place_regions(mesh, regions) {
     while (mesh.spheres.children.length < regions.length) {
       mesh.spheres.add(new THREE.LineSegments(REGION_BALL, new THREE.LineBasicMaterial({
@@ -442,10 +444,12 @@ export class View {
     const sum = (name) => front.models.reduce((all, model) => all + model[name], 0);
     return { loaded: sum("pages"), requested: sum("requested"),
       present: front.regions.length - predicted, predicted,
-      untold: front.regions_left_out > 0 ? `${front.regions_left_out} less urgent not told` : "" };
+      untold: front.regions_left_out > 0 ?
+        `${front.regions_left_out} of lower priority not sent` : "" };
   }
 
-  /// Text with the first model's scale, the faces of all, shown regions and faults.
+  /// Data for the texts of the page: colour scale of the first model, number of faces, regions,
+  /// faults.
   summary() {
     const models = [...this.models.values()];
     const shown = models.find((model) => model.scale);
@@ -499,7 +503,7 @@ export class View {
     this.is_fitted = true;
   }
 
-  /// Moves near a tool and follows it until fit().
+  /// Moves the camera near a tool and along with it until fit().
   follow(tool) {
     const marks = this.tools[tool];
     if (marks && marks.group.visible) {
@@ -519,7 +523,7 @@ export class View {
     }
   }
 
-  /// View from the side of the first tool, slightly from above.
+  /// Places the camera `away_m` from `target`, on the side of the first tool and slightly above.
   look(target, away_m) {
     const from = new THREE.Vector3(0.35, -0.5, 0.4);
     const marks = this.tools.find((each) => each.group.visible);
@@ -543,9 +547,9 @@ export class View {
     this.draw();
   }
 
-  /// Draws soon. Pauses of twice a picture's time, and coarser pixels if drawing is slow, keep a
-  /// machine without a graphics card responsive. Nothing waits for the picture, since that would
-  /// block the page.
+  /// Draws soon. Pauses of twice the last picture's time, and fewer pixels if drawing is slow, keep
+  /// a machine without a graphics card responsive. No call waits for the picture, which would block
+  /// the page.
   draw() {
     this.is_wanted = true;
     if (!this.is_drawing) {
@@ -554,7 +558,8 @@ export class View {
     }
   }
 
-  /// Draws now. The browser's second frame from here begins after this picture was shown.
+  /// Draws now. The second frame that the browser begins after this comes after the picture was
+  /// shown.
   draw_now() {
     const begin_ms = performance.now();
     this.is_wanted = false;

@@ -15,10 +15,10 @@ const plots = new Plots(by_id("plots"));
 const choice = { controller: "", object: "", tool: 0, shells: false, level: "",
   regions: false };
 let events = null;
-let frozen_s = null; // Selected moment; null: now.
+let frozen_s = null; // Moment chosen by the user, in s; null: the present.
 let plot_again_s = 0;
 let connection = "connecting to spm_view";
-let player = null; // Player of recordings; null: live data are shown.
+let player = null; // Player of recordings; null if data are live.
 
 function make_view() {
   try {
@@ -46,14 +46,14 @@ function listen() {
   source.onerror = async () => {
     connection = "spm_view does not answer; trying again";
     if (source.readyState === EventSource.CLOSED && source === events) {
-      connection = "4 viewers are watching already; close one";
+      connection = "4 viewers are connected already; close one";
       setTimeout(() => source === events && listen(), 5000);
     }
     show();
   };
 }
 
-/// Sets the options of a select, unless they are unchanged.
+/// Sets the options of a select element, unless it already has them.
 function offer(select, entries, chosen) {
   const wanted = JSON.stringify(entries);
   if (select.dataset.entries !== wanted) {
@@ -129,7 +129,7 @@ function show_choices(state) {
     return `${object.object}: ${object.name ? `${object.name} (${shows})` : shows}`;
   };
   offer(by_id("object"),
-    [["", "all"], ...objects.map((o) => [`${o.host}/${o.object}`, name_of(o)])], choice.object);
+    [["", "all"], ...objects.map((o) => [`${o.server}/${o.object}`, name_of(o)])], choice.object);
   const tools = controller ? controller.tools : [];
   const shape_of = (tool) => tool.shape.replace(/\d+\.\d+/g, (size) =>
     Number(Number(size).toPrecision(3)));
@@ -148,9 +148,9 @@ function show_legend(waits, left_out) {
   by_id("most").textContent = scale ? scale.most : "";
   by_id("faces").textContent = faces > 0 ? `${faces.toLocaleString("en")} faces` +
     (boxes > 0 ? `, ${boxes.toLocaleString("en")} boxes` : "") +
-    (left_out > 0 ? `; coarser than the controller's where pages are of its ` +
-      `${left_out.toLocaleString("en")} slots that are not told` : "") : "";
-  by_id("waits").textContent = connection || fault || (waits ? `waits for ${waits}` : "");
+    (left_out > 0 ? `; may be coarser than in the controller: ` +
+      `${left_out.toLocaleString("en")} page slots are not sent` : "") : "";
+  by_id("waits").textContent = connection || fault || (waits ? `waiting for ${waits}` : "");
 }
 
 function show_when(time_s) {
@@ -158,7 +158,7 @@ function show_when(time_s) {
   by_id("when").textContent = frozen_s === null ? "live" : `${back_s} s ago`;
 }
 
-/// Selected moment.
+/// Time of the shown moment, in s.
 function shown_s() {
   return player ? player.time_s() : frozen_s === null ? now_s() : frozen_s;
 }
@@ -197,7 +197,7 @@ function show() {
 function look_at(time_s) {
   frozen_s = time_s;
   by_id("freeze").setAttribute("aria-pressed", String(time_s !== null));
-  by_id("freeze").textContent = time_s === null ? "freeze" : "go on";
+  by_id("freeze").textContent = time_s === null ? "freeze" : "continue";
   if (time_s === null) {
     by_id("back").value = "0";
   }
@@ -205,14 +205,14 @@ function look_at(time_s) {
   show();
 }
 
-/// Differences between two recordings, each with a link, and the reason why one ends early.
+/// Shows the differences of two recordings, each with a link, and why a recording ends early.
 function show_notes(film) {
   const notes = by_id("film-notes");
   const lines = film.films.filter((each) => each.note !== "").map((each) =>
     `${each.name}: ${each.note}`);
   if (film.films.length > 1) {
     const names = film.films.map((each) => each.name).join(" and ");
-    lines.unshift(film.differences.length > 0 ? `${names} differ, first in:` :
+    lines.unshift(film.differences.length > 0 ? `${names} differ; the first difference of each kind:` :
       `${names}: every frame is the same`);
   }
   const paragraphs = lines.map((line) => {
@@ -268,7 +268,7 @@ function play(state) {
   player.go_to(0);
 }
 
-/// Live data or recordings, as the first answer states.
+/// Begins with live data or recordings, according to the first answer of the server.
 function begin() {
   fetch("/state").then((answer) => answer.json()).then((state) => {
     if (state.film) {

@@ -19,7 +19,7 @@ namespace tactus
 namespace
 {
 
-/// Tolerance of the SDK's frames, which are products of calibrated joints.
+/// Tolerance of the SDK's rotation matrices, which are products of calibrated joints.
 constexpr double kFrameTolerance = 1e-3;
 
 /// Time step of the SDK's watchdog.
@@ -77,14 +77,13 @@ Result<char, Refusal> open_device(const DhdLibrary& library, int index)
     const int count = library->dhdGetDeviceCount();
     if (count <= 0)
     {
-        return refuse_device(
-            "the SDK finds none; is it plugged in and switched on, and may this user "
-            "open USB devices?");
+        return refuse_device("the SDK finds no device; check the cable, the power and the right of "
+                             "this user to open USB devices");
     }
     if (index >= count)
     {
-        return refuse_device("there is no device " + std::to_string(index) + ", they are 0.." +
-                             std::to_string(count - 1));
+        return refuse_device("there is no device " + std::to_string(index) +
+                             "; the devices are 0.." + std::to_string(count - 1));
     }
     const int id = library->dhdOpenID(static_cast<char>(index));
     if (id < 0)
@@ -95,7 +94,8 @@ Result<char, Refusal> open_device(const DhdLibrary& library, int index)
     return static_cast<char>(id);
 }
 
-/// The described properties that the device really has.
+/// Returns `info` without a wrist, a gripper or motors that the device lacks; an empty name becomes
+/// the SDK's.
 DeviceInfo fitted(DeviceInfo info, const DhdLibrary& library, char id)
 {
     info.name = info.name.empty() ? system_name(library, id) : info.name;
@@ -165,7 +165,7 @@ Result<std::unique_ptr<DhdDevice>, Refusal> DhdDevice::create(const DhdDeviceOpt
     }
     const DeviceInfo info = fitted(options.info, library.value(), id.value());
     std::unique_ptr<DhdDevice> device(
-        // It also closes the device.
+        // The DhdDevice closes the SDK's device.
         new DhdDevice(std::move(library).value(), id.value(), info, options));
     if (const char* fault = find_fault(info); fault != nullptr)
     {
@@ -230,8 +230,8 @@ bool DhdDevice::turn() noexcept
     return publish_reading() && obey(command());
 }
 
-/// Publishes a reading. A non-finite position is the SDK's failure, not the end of the device. If
-/// there is no velocity, its users take differences.
+/// Publishes a reading; false if the device doesn't answer. A non-finite position is the SDK's
+/// failure and makes the reading invalid. A velocity that can't be read stays empty.
 bool DhdDevice::publish_reading() noexcept
 {
     DeviceReading reading;
@@ -256,7 +256,8 @@ bool DhdDevice::publish_reading() noexcept
     return true;
 }
 
-/// Reads wrist and gripper. A wrist without a valid rotation invalidates the position.
+/// Reads wrist and gripper into `reading`. A wrist without a valid rotation makes the reading
+/// invalid.
 void DhdDevice::read_wrist_and_gripper(DeviceReading& reading) const noexcept
 {
     if (has_wrist_)
@@ -285,13 +286,15 @@ void DhdDevice::read_wrist_and_gripper(DeviceReading& reading) const noexcept
     }
 }
 
-/// True if held. A button that can't be read isn't held.
+/// True if the deadman button is pressed, or if none is chosen. A button that can't be read counts
+/// as released.
 bool DhdDevice::is_held() const noexcept
 {
     return !deadman_button_ || library_->dhdGetButton(*deadman_button_, id_) == 1;
 }
 
-/// Applies a command. Not every device has brakes; the absence of force is decisive.
+/// Applies a command; false if the device doesn't obey. Not every device has brakes, so zero force
+/// alone is a successful brake.
 bool DhdDevice::obey(const DeviceCommand& command) noexcept
 {
     const DhdFunctions& sdk = *library_;

@@ -25,37 +25,38 @@ struct DhdDeviceOptions
 
     std::string library; ///< Path of libdhd.so; empty: found by the system's loader.
     int index{0};        ///< Index among the connected devices, up to kIndexMax.
-    /// Description of the device, in its own coordinates, which the SDK does not report. An empty
-    /// name becomes the SDK's; a wrist, a gripper or their motors are removed if the device has
-    /// none. The default is small and weak enough for any of the maker's devices, and assumes their
-    /// usual delay (docs/dhd-device.md); measure yours.
+    /// Description of the device in its own coordinates, since the SDK reports no limits. An empty
+    /// name becomes the SDK's; a wrist, a gripper or motors that the device lacks are removed. The
+    /// default limits suit all devices of the maker and assume the usual delay
+    /// (docs/dhd-device.md); measure yours.
     DeviceInfo info{default_info()};
-    /// Button, 0 to 15, that is pressed while the device is held; none: it is always held.
+    /// Button, 0 to 15, that is pressed while the device is held; none: the device always counts as
+    /// held.
     std::optional<int> deadman_button;
     /// Period of the I/O thread, in [kPeriodMin, kPeriodMax]; the SDK's calls may prolong it.
     Duration period{microseconds(250)};
     RemoteTimes times;
     DeviceFrame frame;
     RtThreadOptions thread{io_thread_options()}; ///< Options of the I/O thread.
-    const Clock* clock{nullptr}; ///< Clock, borrowed; it outlives the device. Not null.
+    const Clock* clock{nullptr};                 ///< Borrowed; must outlive the device. Not null.
 
     [[nodiscard]] static DeviceInfo default_info();
 };
 
-/// A device of Force Dimension, by its maker's SDK, which is loaded at run time. All SDK calls wait
-/// for the device's bus, some 100 us each, so they belong to the I/O thread. A device that stops
-/// answering is closed and looked for again ten times a second.
+/// A device of Force Dimension, driven by the maker's SDK, which is loaded at run time. Each SDK
+/// call waits about 100 us for the device's bus, so only the I/O thread calls the SDK during the
+/// loop. A device that stops answering is closed, and opened again as soon as it is found.
 ///
 /// brake() takes effect in the I/O thread's next cycle: it sets zero force, then the device's own
-/// brakes. While a call into the SDK hangs, only the device's own electronics can end the force.
-/// Its watchdog is set to the time of a force's hold, if device and SDK have one; it also ends the
-/// force of a program that has died.
+/// brakes. While a call into the SDK hangs, only the device's own electronics can end the force. If
+/// device and SDK have a watchdog, it is set to RemoteTimes::force_hold, 32 ms at most. It also
+/// ends the force of a program that has died.
 class DhdDevice final : public RemoteDevice
 {
 public:
     /// Loads the SDK, opens the device and starts the I/O thread; waits for the bus. Refuses
-    /// options out of range, a missing SDK or device, an `info` beyond the ranges of DeviceLimits
-    /// and all that RtThread::start() refuses. A null clock is a bug (asserted).
+    /// options out of range, a missing SDK or device, an `info` with a fault (find_fault()) and all
+    /// that RtThread::start() refuses. A null clock is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<DhdDevice>, Refusal>
     create(const DhdDeviceOptions& options);
 
@@ -87,17 +88,19 @@ private:
     const bool has_wrist_;
     const bool has_gripper_;
     const Duration period_;
-    const std::uint8_t watchdog_steps_; ///< Time of the device's own watchdog.
+    /// Time of the device's own watchdog, in steps of 125 us.
+    const std::uint8_t watchdog_steps_;
     std::atomic<bool> is_stopped_{false};
 
     // Used by the I/O thread.
     char id_;
     bool is_open_{true};
-    bool is_new_{true};        ///< True if nothing was read since it was opened.
+    bool is_new_{true};        ///< True if nothing was read since the device was opened.
     bool makes_forces_{false}; ///< True if brakes are off and forces enabled.
-    MonotonicTime obeyed_;     ///< Time of the last force sent.
+    MonotonicTime obeyed_;     ///< Time of the last command sent.
 
-    std::optional<RtThread> thread_; ///< Thread; it ends before all that it uses.
+    /// Last member: the thread ends before all that it uses.
+    std::optional<RtThread> thread_;
 };
 
 } // namespace tactus

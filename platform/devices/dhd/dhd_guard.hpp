@@ -13,16 +13,16 @@
 namespace tactus
 {
 
-/// Brakes a device that DhdDevice had opened. Only one program at a time can open it, so brake()
-/// opens it as soon as the system has closed it for the dead one.
+/// Brakes a device that a DhdDevice of the dead program had opened. Only one program at a time can
+/// open a device, so brake() waits until the system has closed it for the dead program.
 class DhdGuard final : public DeviceGuard
 {
 public:
-    /// Loads the SDK. The path and the index are those of DhdDeviceOptions.
+    /// Loads the SDK. `library` and `index` have the same meaning as in DhdDeviceOptions.
     [[nodiscard]] static Result<std::unique_ptr<DeviceGuard>, Refusal>
     create(const std::string& library, int index);
 
-    /// Tries for up to two seconds to open the device.
+    /// Tries for up to two seconds to open the device, then brakes and closes it.
     [[nodiscard]] bool brake() noexcept override;
 
 private:

@@ -11,7 +11,7 @@ namespace tactus
 namespace
 {
 
-/// True if the function exists.
+/// Looks up a function; false if the library lacks it.
 template <typename Function>
 bool find(void* handle, const char* name, Function*& function) noexcept
 {
@@ -55,7 +55,7 @@ Result<DhdLibrary, Refusal> DhdLibrary::load(const std::string& path)
     if (const char* missing = library.find_functions(); missing != nullptr)
     {
         return refuse_library("dhd device: " + std::string(name) + " has no function " + missing +
-                              "; it takes Force Dimension's SDK 3");
+                              "; Force Dimension's SDK 3 is required");
     }
     return library;
 }
@@ -89,7 +89,7 @@ const char* DhdLibrary::find_functions() noexcept
     want("dhdSetBrakes", functions_.dhdSetBrakes);
     want("dhdEnableForce", functions_.dhdEnableForce);
     want("dhdErrorGetLastStr", functions_.dhdErrorGetLastStr);
-    find(handle_, "dhdSetWatchdog", functions_.dhdSetWatchdog); // It may be missing.
+    find(handle_, "dhdSetWatchdog", functions_.dhdSetWatchdog); // This function is optional.
     return missing;
 }
 

@@ -10,11 +10,10 @@
 namespace tactus
 {
 
-/// The used functions of Force Dimension's SDK (3.x), by their public C names; declared from its
-/// documentation, so its files are not needed to build this. An int result is negative on failure;
-/// 0 and small positive ones are success with or without a remark. `id` is the result of
-/// dhdOpenID(). One thread, the I/O thread: they wait for the device's bus. All values are in the
-/// device's coordinates.
+/// Functions of Force Dimension's SDK (3.x), by their public C names. They are declared from its
+/// documentation, so a build needs none of its files. An int result is negative on failure, 0 or
+/// positive on success. `id` is the result of dhdOpenID(). One thread at a time; calls wait for the
+/// device's bus. All values are in the device's coordinates.
 struct DhdFunctions
 {
     int (*dhdGetDeviceCount)();
@@ -33,15 +32,15 @@ struct DhdFunctions
     bool (*dhdHasGripper)(char id);
     bool (*dhdHasActiveGripper)(char id);
     int (*dhdGetButton)(int index, char id); ///< 1 while the button is pressed.
-    unsigned (*dhdGetButtonMask)(char id);   ///< One bit a button.
+    unsigned (*dhdGetButtonMask)(char id);   ///< Bit n is set while button n is pressed.
     /// Torque and gripper force are ignored if the device makes none.
     int (*dhdSetForceAndTorqueAndGripperForce)(double fx_n, double fy_n, double fz_n, double tx_nm,
                                                double ty_nm, double tz_nm, double grip_n, char id);
     int (*dhdSetBrakes)(int on, char id);
     int (*dhdEnableForce)(unsigned char on, char id);
     const char* (*dhdErrorGetLastStr)(); ///< Text of the last failure.
-    /// Null in SDKs before 3.3.2. After this time without a force, in steps of 125 us, the device
-    /// itself disables its forces, even if the program is dead; 0: never.
+    /// Null in SDKs before 3.3.2. Sets the time without a force, in steps of 125 us, after which
+    /// the device itself disables its forces, even if the program is dead; 0: never.
     int (*dhdSetWatchdog)(unsigned char steps, char id);
 };
 

@@ -14,7 +14,7 @@ namespace tactus
 namespace
 {
 
-/// Runs foreign code: an exception is its refusal, and so is a null result.
+/// Calls a function of the library. An exception or a null result becomes a refusal.
 template <class Made>
 Result<std::unique_ptr<Made>, Refusal>
 make_by(Result<std::unique_ptr<Made>, Refusal> (*make)(const DeviceRequest&),
@@ -26,7 +26,7 @@ make_by(Result<std::unique_ptr<Made>, Refusal> (*make)(const DeviceRequest&),
         auto made = make(request);
         if (made && made.value() == nullptr)
         {
-            return Refusal{its + "makes no " + what + " and says no reason"};
+            return Refusal{its + "returned no " + what + " and no reason"};
         }
         return made;
     }
@@ -36,7 +36,7 @@ make_by(Result<std::unique_ptr<Made>, Refusal> (*make)(const DeviceRequest&),
     }
     catch (...)
     {
-        return Refusal{its + "threw what is no std::exception"};
+        return Refusal{its + "threw an exception that is no std::exception"};
     }
 }
 
@@ -59,15 +59,16 @@ Result<const DevicePlugin*, Refusal> load_plugin(const std::string& path)
     const auto* plugin = static_cast<const DevicePlugin*>(dlsym(library, "tactus_device_plugin"));
     if (plugin == nullptr)
     {
-        return behind(path, "is no device: it has no TACTUS_DEVICE_PLUGIN");
+        return behind(path, "is no device library: it has no TACTUS_DEVICE_PLUGIN");
     }
     if (plugin->layout != kPluginLayout)
     {
-        return behind(path, "is of another version; compile it with the headers of this one");
+        return behind(
+            path, "is for another version of Tactus; compile it with the headers of this version");
     }
     if (plugin->make == nullptr)
     {
-        return behind(path, "is no device: its TACTUS_DEVICE_PLUGIN has no function");
+        return behind(path, "is no device library: its TACTUS_DEVICE_PLUGIN has no function");
     }
     return plugin;
 }

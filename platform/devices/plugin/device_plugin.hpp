@@ -13,12 +13,13 @@
 #include <memory>
 #include <string>
 
-// A user's device in a shared library, for `hrtc --device plugin:FILE[,WORDS]`. Before the loop, on
-// the thread that assembles the controller; the device itself is used as HapticDevice says.
+// Devices in a user's shared library, for `hrtc --device plugin:FILE[,WORDS]`. Call all functions
+// before the loop, on the thread that assembles the controller. Threads of the device: see
+// HapticDevice.
 namespace tactus
 {
 
-/// Options of the device.
+/// Arguments from which a library makes its device.
 struct DeviceRequest
 {
     std::int64_t rate_hz{1'000}; ///< Rate of the loop, which info() must allow.
@@ -27,11 +28,12 @@ struct DeviceRequest
 };
 
 using MakeDevice = Result<std::unique_ptr<HapticDevice>, Refusal> (*)(const DeviceRequest&);
-/// Makes a guard in the guardian's process, before the device is made in the program's.
+/// Function that makes a guard, called in the guardian's process before the program makes the
+/// device.
 using MakeGuard = Result<std::unique_ptr<DeviceGuard>, Refusal> (*)(const DeviceRequest&);
 
-/// Layout of the types exchanged between program and library; a library with another is refused.
-/// The first number counts changes that sizes don't show.
+/// Layout of the types that program and library share; a library with another layout is refused.
+/// The first number counts layout changes that leave all sizes equal. The rest are sizes in bytes.
 using PluginLayout = std::array<std::uint32_t, 6>;
 inline constexpr PluginLayout kPluginLayout{3,
                                             sizeof(DeviceInfo),
@@ -40,7 +42,7 @@ inline constexpr PluginLayout kPluginLayout{3,
                                             sizeof(DeviceStatus),
                                             sizeof(DeviceRequest)};
 
-/// Entry points of a library, under the name tactus_device_plugin.
+/// Entry points of a library, exported as `tactus_device_plugin`.
 struct DevicePlugin
 {
     PluginLayout layout{};
@@ -48,18 +50,18 @@ struct DevicePlugin
     MakeGuard guard{nullptr}; ///< Null: the hardware ends the force of a dead program by itself.
 };
 
-/// Loads the library, which stays for the life of the process, and makes its device. A path without
-/// a folder is relative to the working directory. Refused in a line that names the file: a library
-/// that can't be loaded, has another layout, refuses, makes nothing, throws, or describes a faulty
-/// device (find_fault()).
+/// Loads the library for the life of the process, and makes its device. A path without a folder is
+/// in the working directory. Refuses a library that can't be loaded, has another layout, refuses,
+/// returns null, throws, or describes a device with a fault (find_fault()). The refusal is one line
+/// that names the file.
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal>
 load_device(const std::string& path, const DeviceRequest& request);
 
-/// Loads the library and makes its guard; none if it has none. Refused as load_plugin() does.
+/// Loads the library and makes its guard; null if the library has none. Refuses like load_device().
 [[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal>
 load_guard(const std::string& path, const DeviceRequest& request);
 
-/// True if the library, accepted by load_device(), has a guard.
+/// True if the library has a guard; false if it has none or can't be loaded.
 [[nodiscard]] bool has_guard(const std::string& path);
 
 } // namespace tactus
@@ -70,7 +72,7 @@ extern "C"
     __attribute__((visibility("default"))) extern const tactus::DevicePlugin tactus_device_plugin;
 }
 
-/// Makes a plugin of the library. Arguments: a MakeDevice, and a MakeGuard if there is one.
+/// Defines the entry points of a library. Arguments: a MakeDevice and, optionally, a MakeGuard.
 #define TACTUS_DEVICE_PLUGIN(...)                                                                  \
     const tactus::DevicePlugin tactus_device_plugin                                                \
     {                                                                                              \

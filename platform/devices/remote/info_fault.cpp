@@ -76,7 +76,7 @@ const char* find_fault(const DeviceInfo& info) noexcept
     if (info.rate_min_hz < 1 || info.rate_max_hz < info.rate_min_hz ||
         info.rate_max_hz > kRateMax_hz)
     {
-        return "device: rates must be in range 1..100000 Hz, the least not above the largest";
+        return "device: rates must be in range 1..100000 Hz, the minimum not above the maximum";
     }
     return nullptr;
 }

@@ -9,11 +9,12 @@
 namespace tactus
 {
 
-/// Length of a device's name; printable ASCII, so that it may be shown unchanged.
+/// Most bytes of a device's name. The name must be printable ASCII, so that it may be shown
+/// unchanged.
 inline constexpr std::size_t kDeviceNameMax = 31;
 
-/// Null, or one line that names a value out of range in a device's description. Descriptions come
-/// from outside, and forces depend on them.
+/// Returns one line that names a value out of range in a device's description; null if all are in
+/// range. Descriptions come from outside, and forces depend on them.
 [[nodiscard]] const char* find_fault(const DeviceInfo& info) noexcept;
 
 } // namespace tactus

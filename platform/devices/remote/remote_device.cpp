@@ -15,7 +15,7 @@ bool is_in_range(Duration time) noexcept
     return time >= RemoteTimes::kMin && time <= RemoteTimes::kMax;
 }
 
-/// Function of an optional value, if it exists.
+/// Applies `function` to the value, if there is one.
 template <typename T, typename Function>
 auto mapped(const std::optional<T>& value, const Function& function) noexcept
 {
@@ -28,7 +28,7 @@ RtThreadOptions io_thread_options()
 {
     RtThreadOptions options;
     options.priority = 79;
-    options.lock_memory = false; // These belong to the owner of the haptic thread.
+    options.lock_memory = false; // The haptic thread's owner sets both.
     options.processors_awake = false;
     options.allow_no_rt = true;
     return options;
@@ -38,8 +38,8 @@ std::string find_bad_time(const RemoteTimes& times)
 {
     if (!is_in_range(times.silence) || !is_in_range(times.force_hold))
     {
-        return "remote device: the time of silence and that of a force's hold must be in range "
-               "1 ms..60 s";
+        return "remote device: the silence time and the hold time of a force must be in range 1 "
+               "ms..60 s";
     }
     return {};
 }
@@ -52,8 +52,8 @@ RemoteDevice::RemoteDevice(const DeviceInfo& device, const DeviceFrame& frame,
 
 DeviceSample RemoteDevice::read() noexcept
 {
-    // It fails if there is none yet, or if the I/O thread has stopped in the middle of a write:
-    // then the last reading ages until it is not connected.
+    // try_read() fails before the first reading, or while the I/O thread is stopped in the middle
+    // of a write. Then the last reading ages until the device is not connected.
     static_cast<void>(readings_.try_read(reading_));
     connected_ = reading_.attached && clock_.now() - reading_.arrival <= times_.silence;
     DeviceSample sample = reading_.sample;
@@ -84,8 +84,8 @@ void RemoteDevice::brake_softly() noexcept
     brake_.brake_softly(clock_.now());
 }
 
-/// The count voids all earlier forces, even if the I/O thread can't read the mailbox at the moment
-/// and continues with its last command.
+/// Counts a release, which voids all earlier forces. This also holds if the I/O thread can't read
+/// the mailbox now and continues with its last command.
 void RemoteDevice::release_brake() noexcept
 {
     if (brake_.try_yield(clock_.now()))
@@ -163,10 +163,10 @@ DeviceCommand RemoteDevice::command() noexcept
         now.state = DeviceState::brake;
         return now;
     }
-    // It fails while the haptic thread is stopped in the middle of a write: then the last command
-    // ages.
+    // try_read() fails while the haptic thread is stopped in the middle of a write. Then the last
+    // command ages.
     static_cast<void>(commands_.try_read(taken_));
-    now.written = share < 1.0 ? time : taken_.written; // A fade changes the force continuously.
+    now.written = share < 1.0 ? time : taken_.written; // Each command of a fade is new.
     if (published_.attached && makes_force(taken_, published_.attachment, brake_.before(time)))
     {
         const Wrench& wrench = taken_.wrench;

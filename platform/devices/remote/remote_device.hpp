@@ -23,18 +23,19 @@ struct RemoteTimes
     static constexpr Duration kMin{1'000'000};
     static constexpr Duration kMax{60'000'000'000};
 
-    /// Time without a sample until it is not connected, equal to the longest that a frame uses an
-    /// old one.
+    /// Time without a sample after which the device is not connected. The default equals
+    /// kSampleHold_s, for which a frame uses an old sample.
     Duration silence{milliseconds(20)};
-    /// Time after a write until the force ends: the watchdog against a haptic thread that hangs.
+    /// Time after a write at which the force ends: the watchdog against a haptic thread that hangs.
     Duration force_hold{milliseconds(20)};
 };
 
-/// Options of an I/O thread: below the haptic thread's priority, above all others; it runs without
-/// real-time rights, too.
+/// Options of an I/O thread: priority 79, one below the haptic thread's default. The thread also
+/// runs without real-time rights.
 [[nodiscard]] RtThreadOptions io_thread_options();
 
-/// Empty if both are in [RemoteTimes::kMin, RemoteTimes::kMax]; otherwise one line.
+/// Returns the fault in one line; empty if both times are in [RemoteTimes::kMin,
+/// RemoteTimes::kMax].
 [[nodiscard]] std::string find_bad_time(const RemoteTimes& times);
 
 /// The I/O thread's reading of a device, in the device's coordinates.
@@ -43,8 +44,8 @@ struct DeviceReading
     Vec3 position_m{Vec3::Zero()};
     std::optional<Vec3> velocity_m_per_s;
     MonotonicTime time;    ///< Time of the position, on the controller's clock.
-    MonotonicTime arrival; ///< Time of its arrival.
-    bool valid{false};     ///< False: the position is ignored; the last good one stays.
+    MonotonicTime arrival; ///< Time of the reading's arrival, on the same clock.
+    bool valid{false};     ///< False: pose, velocities, gripper and time are ignored.
     bool deadman_held{true};
     std::optional<Quaternion> rotation; ///< Rotation as a unit quaternion.
     std::optional<Vec3> angular_velocity_rad_per_s;
@@ -55,47 +56,49 @@ struct DeviceReading
 /// Present command for the device, in its own coordinates.
 struct DeviceCommand
 {
-    Vec3 force_n{Vec3::Zero()}; ///< Zero in all states except `force`, like those below.
+    /// Force, torque and gripper force are zero in all states except `force`.
+    Vec3 force_n{Vec3::Zero()};
     Vec3 torque_nm{Vec3::Zero()};
     double gripper_force_n{0.0};
     DeviceState state{DeviceState::idle};
-    MonotonicTime written; ///< Time of the write, which distinguishes writes.
+    MonotonicTime written; ///< Time of the write; the present time during a fade.
 };
 
-/// The haptic thread's half of a device whose other half waits for a network or a bus. That half
-/// has its own I/O thread, with a mailbox in each direction. So read(), write(), release_brake()
-/// and status() make no system call, and cost some 100 ns and two clock readings at most.
+/// Base of devices that wait for a network or a bus. A subclass waits on an I/O thread of its own;
+/// two mailboxes connect it to the haptic thread. So read(), write(), release_brake() and status()
+/// make no system call, and cost about 100 ns and two clock readings at most.
 ///
 ///     haptic thread                                I/O thread
 ///     read()   <-- mailbox of readings    <-- publish(), detach()
 ///     write()  --> mailbox of commands    --> command()
 ///
-/// A device that returns is a new attachment, even if it is the same device: a force written for an
-/// earlier attachment is never sent to it, and status() is `idle` until the next write.
+/// Each reconnection is a new attachment, even of the same device. A force written for an earlier
+/// attachment is never sent to the device, and status() is `idle` until the next write.
 class RemoteDevice : public HapticDevice
 {
 public:
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-    /// Newest reading. Without a new one since the last call the last again, with its time.
+    /// Newest reading; without a new one the last reading again, with its time.
     [[nodiscard]] DeviceSample read() noexcept override;
     void write(const Wrench& wrench) noexcept override;
-    /// The I/O thread brakes in its next cycle; subclasses may act earlier.
+    /// Takes effect in the I/O thread's next cycle; subclasses may act earlier.
     void brake() noexcept override;
-    /// The I/O thread fades the force.
+    /// The I/O thread lowers the force over kBrakeFade.
     void brake_softly() noexcept override;
     void release_brake() noexcept override;
     [[nodiscard]] DeviceStatus status() const noexcept override;
 
 protected:
-    /// `device` describes itself in its own coordinates. `clock` is borrowed and outlives this.
+    /// `device`: description in the device's own coordinates. `clock`: borrowed, must outlive this
+    /// object.
     RemoteDevice(const DeviceInfo& device, const DeviceFrame& frame, const RemoteTimes& times,
                  const Clock& clock);
 
-    /// I/O thread. `is_new`: the device was not connected before this reading.
+    /// I/O thread: passes a reading to read(). `is_new`: the reading begins a new attachment.
     void publish(const DeviceReading& reading, bool is_new) noexcept;
-    /// I/O thread: the device is gone, even if the last reading is new.
+    /// I/O thread: ends the attachment, even if the last reading is new.
     void detach() noexcept;
-    /// I/O thread, just before it sends.
+    /// I/O thread: command for the device now. Call just before sending.
     [[nodiscard]] DeviceCommand command() noexcept;
     [[nodiscard]] const Clock& clock() const noexcept { return clock_; }
 
@@ -104,15 +107,15 @@ private:
     {
         DeviceSample sample; ///< Sample in the world; frame and connected are set by read().
         MonotonicTime arrival;
-        std::uint64_t attachment{0}; ///< Number of the attachment, from 1; 0: there was none.
+        std::uint64_t attachment{0}; ///< Number of the attachment, from 1; 0: none yet.
         bool attached{false};
     };
     struct Command
     {
         Wrench wrench;
         MonotonicTime written;
-        std::uint64_t attachment{0}; ///< Attachment at the write.
-        /// Number of brakes released before; a force from before is void.
+        std::uint64_t attachment{0}; ///< Number of the attachment at the write.
+        /// Value of `releases_` at the write; a later release voids the force.
         std::uint64_t release{0};
         DeviceState state{DeviceState::idle};
     };
@@ -128,11 +131,11 @@ private:
     Mailbox<Reading> readings_; ///< Mailbox written by the I/O thread.
     Mailbox<Command> commands_; ///< Mailbox written by the haptic thread.
     BrakeLatch brake_;
-    std::atomic<std::uint64_t> releases_{0}; ///< Sequentially consistent: it is rare.
+    std::atomic<std::uint64_t> releases_{0}; ///< Number of releases; sequentially consistent.
 
     // Used by the haptic thread.
     Reading reading_;
-    bool connected_{false}; ///< State at the last read.
+    bool connected_{false}; ///< Connection state at the last read().
     Command written_;
     DeviceStatus status_;
 

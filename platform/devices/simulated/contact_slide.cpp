@@ -18,7 +18,7 @@ constexpr double kSlideSpeedDiagPerS = 0.1;
 /// are touched more lightly so that the hand stays within 3.5 % of a diagonal.
 constexpr double kForceN = 1.0;
 constexpr double kForceNPerDiagonalM = 5.0;
-/// Slight variation of the hand's pressure, as with people.
+/// Variation of the set force, as a fraction, as in a person's hand.
 constexpr double kSwing = 0.3;
 constexpr double kSwingPeriodS = 1.6;
 /// Gain of the pressing. With 140 to 190 N/m between hand and wall the force follows at about 25
@@ -26,20 +26,21 @@ constexpr double kSwingPeriodS = 1.6;
 constexpr double kPressGainMPerNs = 0.175;
 constexpr double kPressSpeedMaxMPerS = 0.1;
 constexpr double kPressSpeedMaxDiagPerS = 0.5;
-/// Rate of the heading, for circles of an eighth of a diagonal.
+/// Rate at which the heading turns: circles with a radius of an eighth of a diagonal.
 constexpr double kTurnRadPerS = 0.8;
 constexpr double kNormalFilterS = 0.005;
 constexpr double kSpeedFilterS = 0.02;
 constexpr double kSpeedGainPerS = 10.0;
 constexpr double kSpeedFactorMin = 0.3;
 constexpr double kSpeedFactorMax = 1.5;
-/// Speed below this share of the set speed for this long means an obstacle.
+/// A device slower than this share of the set speed, for this long, has met an obstacle.
 constexpr double kStuckShare = 0.3;
 constexpr double kStuckAfterS = 0.2;
-/// Share of the set force; below it nothing is felt.
+/// Share of the set force below which a force counts as no contact.
 constexpr double kFeltShare = 0.02;
-/// Share of a firm touch. A device of 1 N s/m damps with half of that at most: 0.16 N during the
-/// approach to the default model.
+/// Share of the set force above which a contact is firm. A fading force damps with half of the
+/// device's own damping at most. With 1 N s/m that is 0.16 N during the approach to the default
+/// model.
 constexpr double kFirmShare = 0.2;
 
 /// Share of the new value in a first-order low-pass.
@@ -48,7 +49,8 @@ double filter_share(double period_s, double time_s) noexcept
     return period_s / (period_s + time_s);
 }
 
-/// Unit vector perpendicular to `normal`, along `heading` if it has such a component.
+/// Unit vector perpendicular to `normal`, along the part of `heading` there; any such vector if
+/// `heading` is parallel to `normal`.
 Vec3 heading_across(const Vec3& normal, const Vec3& heading) noexcept
 {
     constexpr double kParallel = 1e-6;
@@ -108,7 +110,7 @@ bool ContactSlide::is_firm(const OperatorSense& sense) const noexcept
     return sense.force_world_n.norm() > kFirmShare * force_n_;
 }
 
-/// Force around the set force, a triangle wave with rounded corners.
+/// Wanted force in this frame: a triangle wave with rounded corners around the set force.
 double ContactSlide::wanted_force_n() const noexcept
 {
     const double turns = static_cast<double>(frames_) * period_s_ / kSwingPeriodS;
@@ -124,7 +126,8 @@ Vec3 ContactSlide::press(double force_n) const noexcept
     return -normal_ * std::clamp(speed, -press_speed_max_m_per_s_, press_speed_max_m_per_s_);
 }
 
-/// Turns the heading about the normal, first by its own slow curve and then with the surface.
+/// Moves the normal towards the felt force. Turns the heading slowly about the normal, then into
+/// the surface.
 void ContactSlide::follow_surface(const OperatorSense& sense, double force_n) noexcept
 {
     if (!is_touching(sense))

@@ -10,8 +10,9 @@
 namespace tactus
 {
 
-/// Motion of a hand along a surface that it knows only by contact: it moves perpendicular to the
-/// felt force, turns slowly, and presses so that the felt force follows a set value.
+/// Motion of a simulated hand along a surface that is known only by its contact force. The hand
+/// moves perpendicular to the felt force, changes its heading slowly, and presses so that the felt
+/// force follows a set value.
 ///
 ///     felt force ^   heading -->            pressing: an integrating controller on |force|;
 ///                |  /                       its output is a limited speed, so that it does not
@@ -26,7 +27,8 @@ class ContactSlide
 public:
     ContactSlide(double diagonal_m, double period_s) noexcept;
 
-    /// Starts at the first felt force; `heading_hint` need not lie in the surface.
+    /// Starts a slide; is_touching(sense) must hold (asserted). `heading_hint` is a direction in
+    /// the world; its part along the surface becomes the heading.
     void begin(const OperatorSense& sense, const Vec3& heading_hint) noexcept;
 
     /// Velocity of the hand in this frame, in m/s.
@@ -35,7 +37,7 @@ public:
     void turn_round() noexcept;
 
     [[nodiscard]] bool is_touching(const OperatorSense& sense) const noexcept;
-    /// True for forces above those of damping at landing speeds.
+    /// True if damping alone, at landing speeds, can't cause this force.
     [[nodiscard]] bool is_firm(const OperatorSense& sense) const noexcept;
     /// Normal out of the surface, of unit length.
     [[nodiscard]] const Vec3& normal() const noexcept { return normal_; }

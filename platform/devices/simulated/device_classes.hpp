@@ -8,24 +8,24 @@
 namespace tactus
 {
 
-/// Kinds of device to simulate. Force and stiffness are published by makers and users; mass,
-/// damping, friction and quantum are assumed, of the order of such mechanisms, with a damping that
-/// allows the stiffness at such a device's usual rate. None is a measurement of a product: measure
-/// your own (docs/stability.md).
+/// Limits of device classes to simulate. Forces and stiffnesses are published by makers and users.
+/// Mass, damping, friction and quantum are assumed values of the usual size; the damping allows the
+/// stiffness at the usual rate of such a device. None is a measurement of a product: measure your
+/// own (docs/stability.md).
 
-/// Limits of no product: a desk device that rotates and makes a torque. An angle equals a
-/// displacement on a lever of 3.2 cm (the root of 0.001 m^2) of the default device in all values
-/// except the torque, which is that of commercial wrists.
-inline constexpr RotationLimits kDeskTurn{.is_measured = true,
-                                          .torque_max_nm = 0.5,
-                                          .inertia_kg_m2 = 1e-4,
-                                          .damping_nm_s_per_rad = 1e-3,
-                                          .friction_nm = 0.0,
-                                          .quantum_rad = 0.0,
-                                          .slew_max_nm_per_s = 1'000.0,
-                                          .stiffness_max_nm_per_rad = 3.0,
-                                          .added_damping_max_nm_s_per_rad = 5e-3};
-inline constexpr DeviceLimits kDeskClass{.rotation = kDeskTurn};
+/// Rotation limits of a fictitious desk device that makes a torque. Inertia, damping and stiffness
+/// are those of the default DeviceLimits at a lever of 3.2 cm (the root of 0.001 m^2). The largest
+/// torque is that of commercial wrists.
+inline constexpr RotationLimits kDeskRotation{.is_measured = true,
+                                              .torque_max_nm = 0.5,
+                                              .inertia_kg_m2 = 1e-4,
+                                              .damping_nm_s_per_rad = 1e-3,
+                                              .friction_nm = 0.0,
+                                              .quantum_rad = 0.0,
+                                              .slew_max_nm_per_s = 1'000.0,
+                                              .stiffness_max_nm_per_rad = 3.0,
+                                              .added_damping_max_nm_s_per_rad = 5e-3};
+inline constexpr DeviceLimits kDeskClass{.rotation = kDeskRotation};
 
 /// A small desktop arm with a stylus, which measures its rotation and makes no torque.
 inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
@@ -43,7 +43,7 @@ inline constexpr DeviceLimits kTouchClass{.mass_kg = 0.045,
                                                        .friction_nm = 1e-4,
                                                        .quantum_rad = 1e-3}};
 
-/// A stiff parallel mechanism. Its handle doesn't rotate; neither does the next one's.
+/// A stiff parallel mechanism, whose handle doesn't rotate.
 inline constexpr DeviceLimits kOmegaClass{.mass_kg = 0.2,
                                           .damping_n_s_per_m = 1.7,
                                           .friction_n = 0.05,
@@ -54,7 +54,7 @@ inline constexpr DeviceLimits kOmegaClass{.mass_kg = 0.2,
                                           .stiffness_max_n_per_m = 5'000.0,
                                           .added_damping_max_n_s_per_m = 10.0};
 
-/// A larger parallel mechanism.
+/// A larger parallel mechanism, whose handle doesn't rotate.
 inline constexpr DeviceLimits kDeltaClass{.mass_kg = 0.25,
                                           .damping_n_s_per_m = 1.7,
                                           .friction_n = 0.1,

@@ -69,7 +69,7 @@ DeviceSample FaultyDevice::read() noexcept
     return sample;
 }
 
-/// Velocity of the whole displacement missed by the encoders, in one period.
+/// Sets the velocity as if the whole missed displacement had happened in one period.
 void FaultyDevice::leap(DeviceSample& sample) const noexcept
 {
     const double time_s = to_seconds(sample.time - last_.time);

@@ -16,12 +16,12 @@ namespace tactus
 enum class DeviceFaultKind : std::uint8_t
 {
     jitter,  ///< The position is off by up to kJitter_m on each axis, random in each reading.
-    dropout, ///< The reading is not valid and has the last good values.
-    /// The encoders stand still: the last position and rotation, velocity 0, while time advances.
-    /// The first reading afterwards has the whole displacement, and the velocity of that in one
-    /// period.
+    dropout, ///< The reading is not valid, with the last valid pose, velocities and time.
+    /// The encoders stand still: position and rotation are the last ones and velocities 0, while
+    /// time advances. The first reading afterwards has the whole displacement, with the velocity of
+    /// that displacement in one period.
     stuck,
-    nan,       ///< Position, velocities and gripper are NaN but marked valid.
+    nan,       ///< Pose, velocities and gripper are NaN but marked valid.
     time_jump, ///< The readings' time is ahead by kTimeJump, and falls back afterwards.
     /// The device does not answer and makes no force; idle afterwards, until the next write.
     disconnect,
@@ -41,7 +41,7 @@ struct DeviceFault
 };
 
 /// A device whose readings go wrong on a schedule. Simultaneous faults act in the order given. The
-/// same device, faults and seed give the same readings. Threads as those of the device.
+/// same device, faults and seed give the same readings. Threads as in HapticDevice.
 class FaultyDevice final : public WrappedDevice
 {
 public:

@@ -37,8 +37,8 @@ LandedOperator::LandedOperator(const OperatorScene& scene)
     , pace_(scene.diagonal_m)
     , feeling_(scene.diagonal_m, period_s_)
 {
-    const std::vector<LandingSite> sites =
-        find_landing_sites(scene.anchors_world_m, diagonal_m_, tool_radius_m_, scene.hands_before);
+    const std::vector<LandingSite> sites = find_landing_sites(
+        scene.anchors_world_m, diagonal_m_, tool_radius_m_, scene.operators_before);
     const Vec3 way_m = sites.front().aim_world_m - sites.front().gate_world_m;
     start_world_m_ = sites.front().gate_world_m;
     last_device_world_m_ = start_world_m_;
@@ -64,7 +64,8 @@ Vec3 LandedOperator::next_world_m(const OperatorSense& sense) noexcept
     return touched_world_m_;
 }
 
-/// A force alone is no touch: a force that returns after a fault damps the motion, in the air too.
+/// True at a touch: near the surface, with a force and a slowed device. A force alone is no touch:
+/// a force that returns after a fault damps the motion, in the air, too.
 bool LandedOperator::has_met_something(const OperatorSense& sense, double left_m,
                                        double speed_m_per_s) noexcept
 {

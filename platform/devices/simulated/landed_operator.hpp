@@ -13,9 +13,9 @@
 namespace tactus
 {
 
-/// Descends straight from a gate to the place below it and from the first touch on moves around
-/// that place, along its own axes. Without a contact it stops half a diagonal past the place. The
-/// scene must suit ScriptedOperator.
+/// Operator that descends straight from the gate of a landing site to its aim. After the first
+/// touch it moves around the point of touch, along its own axes. Without a touch it stops half a
+/// diagonal past the aim. The scene must pass the checks of ScriptedOperator::create().
 class LandedOperator : public OperatorMotion
 {
 public:
@@ -25,8 +25,8 @@ public:
 protected:
     explicit LandedOperator(const OperatorScene& scene);
 
-    /// Offset from the place of the first touch, `seconds` later: x and y along the surface, z into
-    /// it. Continuous, and 0 at 0 s. Once a frame.
+    /// Offset from the point of the first touch, `seconds` after the touch: z along the descent, x
+    /// and y perpendicular to it. Must be continuous, and 0 at 0 s. Called once a frame.
     [[nodiscard]] virtual Vec3 offset_m(double seconds) noexcept = 0;
     /// Depth at which the default device and hand make about 1 N on a wall of 500 N/m.
     [[nodiscard]] double press_m() const noexcept { return press_m_; }
@@ -42,18 +42,18 @@ private:
     OperatorPace pace_;
     ContactSlide feeling_; ///< Detects touches.
     Vec3 last_device_world_m_;
-    double device_speed_m_per_s_{0.0}; ///< Downward speed, over the last 10 ms or so.
+    double device_speed_m_per_s_{0.0}; ///< Speed along `down_`, low-pass filtered over 10 ms.
     Vec3 start_world_m_;
     Vec3 down_;
     Vec3 across_;
-    double length_m_; ///< Distance from the start to the place.
+    double length_m_; ///< Distance from the start to the aim.
     double way_m_{0.0};
     Vec3 touched_world_m_{Vec3::Zero()};
     bool has_landed_{false};
     std::uint64_t frames_since_{0};
 };
 
-/// Presses within 0.3 s and rests.
+/// Presses into the surface within 0.3 s of the touch, and rests there.
 class PressingOperator final : public LandedOperator
 {
 public:
@@ -63,7 +63,7 @@ private:
     [[nodiscard]] Vec3 offset_m(double seconds) noexcept override;
 };
 
-/// Two taps a second, between them three tool radii off the surface.
+/// Taps twice a second; rises to three tool radii above the surface between taps.
 class TappingOperator final : public LandedOperator
 {
 public:
@@ -75,7 +75,7 @@ private:
     double height_m_;
 };
 
-/// Presses and circles twice a second, a tenth of a diagonal wide.
+/// Presses, and moves twice a second round a circle a tenth of a diagonal wide.
 class SpinningOperator final : public LandedOperator
 {
 public:

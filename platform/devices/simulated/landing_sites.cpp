@@ -54,8 +54,8 @@ Vec3 extreme_anchor(std::span<const Vec3> anchors, const Vec3& direction) noexce
                              { return a.dot(direction) < b.dot(direction); });
 }
 
-/// Step towards the centre, within the plane perpendicular to `direction`, at most half of the
-/// distance.
+/// Step from the anchor towards the centre, within the plane perpendicular to `direction`. Its
+/// length is `length_m`, at most half of the distance.
 Vec3 inward_step(const Vec3& anchor, const Vec3& centre, const Vec3& direction, double length_m)
 {
     const Vec3 across = part_across(centre - anchor, direction);

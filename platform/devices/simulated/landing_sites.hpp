@@ -15,8 +15,8 @@ namespace tactus
 struct LandingSite
 {
     Vec3 aim_world_m;      ///< Point on or just below the surface.
-    Vec3 gate_world_m;     ///< Point outside; the straight path to the aim is free.
-    double orbit_radius_m; ///< Gate's distance from the box centre: a sphere around the model.
+    Vec3 gate_world_m;     ///< Point outside the model; the straight path to the aim is free.
+    double orbit_radius_m; ///< Distance of the gate from the centre of the model's box.
 };
 
 /// Centre of the anchors' bounding box.
@@ -24,12 +24,12 @@ struct LandingSite
 
 /// Sites to try, best first; never empty for at least one finite anchor.
 ///
-/// An anchor that is extreme in a direction d has the whole model on one side of its plane, so the
-/// other side is free; a gate above that plane and a straight descent are safe. The directions are
-/// those of the axes, the box's shortest first: the widest faces, with the most room to slide.
-/// `turned`: number of hands before this one; the order starts after their sites, cyclically.
-/// Extreme anchors tend to be corners, so the first attempt aims a twentieth of the diagonal
-/// inwards, which may miss a thin model; the anchor itself follows.
+/// The whole model is on one side of the plane through its extreme anchor in a direction. So a gate
+/// on the other side and a straight descent are free. The directions are those of the axes, both
+/// ways. The shortest axis of the box comes first, since its faces are the widest and leave the
+/// most room to slide. Extreme anchors tend to be corners. So the first site of an anchor aims a
+/// twentieth of the diagonal inwards, which may miss a thin model; the second site aims at the
+/// anchor. `turned`: number of earlier hands on the model; their sites, two each, move to the end.
 [[nodiscard]] std::vector<LandingSite> find_landing_sites(std::span<const Vec3> anchors_world_m,
                                                           double diagonal_m, double tool_radius_m,
                                                           std::size_t turned = 0);

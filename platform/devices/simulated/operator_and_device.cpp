@@ -41,30 +41,30 @@ std::string find_bad_option(const OperatorAndDeviceOptions& options)
 {
     if (!is_usable(options.device))
     {
-        return "hand and device: the device's mass, largest force, slew and stiffness must be "
-               "finite and above zero, its dampings, friction, quantum and delay finite and not "
-               "negative";
+        return "simulated operator and device: the device's mass, largest force, slew and "
+               "stiffness must be finite and above zero; its dampings, friction, quantum and delay "
+               "must be finite and not negative";
     }
     if (!is_usable(options.hand))
     {
-        return "hand and device: the hand's values must be finite and not negative, and mass, arm "
-               "stiffness or arm damping above zero";
+        return "simulated operator and device: the operator's values must be finite and not "
+               "negative; mass, arm stiffness or arm damping must be above zero";
     }
     if (!(options.period_s >= kPeriodMin_s && options.period_s <= kPeriodMax_s))
     {
-        return "hand and device: period " + std::to_string(options.period_s) +
+        return "simulated operator and device: period " + std::to_string(options.period_s) +
                " s is out of range 0.00001..0.1 s";
     }
     if (options.device.delay_s > OperatorAndDevice::kDelayMaxPeriods * options.period_s)
     {
-        return "hand and device: delay " + std::to_string(options.device.delay_s) +
+        return "simulated operator and device: delay " + std::to_string(options.device.delay_s) +
                " s is longer than 8 periods";
     }
     const double from_centre_m = (options.start_world_m - options.workspace_centre_world_m).norm();
     if (!is_positive(options.workspace_radius_m) || !(from_centre_m <= options.workspace_radius_m))
     {
-        return "hand and device: the start is " + std::to_string(from_centre_m) +
-               " m from the workspace centre, its radius is " +
+        return "simulated operator and device: the start is " + std::to_string(from_centre_m) +
+               " m from the workspace centre; the workspace radius is " +
                std::to_string(options.workspace_radius_m) + " m";
     }
     return {};
@@ -132,8 +132,9 @@ const Vec3& OperatorAndDevice::force_at(std::uint32_t sub_step) const noexcept
     return forces_n_[late];
 }
 
-/// Step of the implicit midpoint rule: with w the speed midway, 2 m (w - v) / dt is the sum of all
-/// forces at x + w dt / 2 and w; for two masses two equations on each axis.
+/// Step of the implicit midpoint rule, from position x and velocity v to the velocity w midway. The
+/// sum of all forces at x + w dt / 2 and w must equal 2 m (w - v) / dt. Two masses give two
+/// equations on each axis.
 OperatorAndDevice::Midway OperatorAndDevice::solve(const Vec3& force_n, const Vec3& target_mid_m,
                                                    const Vec3& target_velocity) const noexcept
 {

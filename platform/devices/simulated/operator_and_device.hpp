@@ -13,14 +13,14 @@
 namespace tactus
 {
 
-/// The moving part of a hand, its arm and its grip. The values are those of a relaxed hand; all are
-/// finite and not negative.
+/// Mechanical properties of a hand with its arm and its grip. The defaults are those of a relaxed
+/// hand; all must be finite and not negative.
 struct OperatorLimb
 {
     double mass_kg{0.1};
     double stiffness_n_per_m{200.0}; ///< Stiffness between the hand and its target.
     double damping_n_s_per_m{4.0};   ///< Damping between the hand and its target.
-    /// Stiffness between the hand and the device; with both 0 the device is let go.
+    /// Stiffness between hand and device. If both values of the grip are 0, the device is let go.
     double grip_stiffness_n_per_m{2'000.0};
     double grip_damping_n_s_per_m{4.0};
 };
@@ -35,7 +35,7 @@ struct OperatorAndDeviceOptions
     double workspace_radius_m{1.0};
 };
 
-/// Energies since the start, in joules. All except the works are never negative.
+/// Energies since the start, in joules. Only the two works can be negative.
 struct OperatorAndDeviceEnergy
 {
     double force_work_j{0.0};   ///< Work of the device's motors.
@@ -43,7 +43,7 @@ struct OperatorAndDeviceEnergy
     double viscous_loss_j{0.0}; ///< Loss in the device's damping and its brake.
     double friction_loss_j{0.0};
     double hand_loss_j{0.0}; ///< Loss in the dampers of arm and grip.
-    double stop_loss_j{0.0}; ///< Loss at the end of the reach.
+    double stop_loss_j{0.0}; ///< Loss when the device stops at the workspace's end.
 };
 
 /// A hand that holds a device, as two point masses:
@@ -53,20 +53,21 @@ struct OperatorAndDeviceEnergy
 ///                                                       damper and Coulomb friction
 ///                                                       against the ground
 ///
-/// The device holds each force from DeviceLimits::delay_s after it was given until the next one is
-/// due, cut to force_max_n. Its position is measured in steps of the quantum on each axis. Friction
-/// holds it against forces up to the friction. It stops at the workspace's sphere without bounce.
+/// Each force acts from DeviceLimits::delay_s after its step() until the next one acts, cut to
+/// force_max_n. The position is measured in steps of quantum_m on each axis. A resting device stays
+/// at rest under forces up to friction_n. The device stops at the workspace's sphere without
+/// bounce.
 ///
-/// Each period is integrated in kSubSteps equal steps by the implicit midpoint rule: it changes the
-/// energy of the linear part by exactly the work done and lost, so that the integration itself
-/// feeds no limit cycle. The same forces and targets give the same bits; time counts in periods.
-/// Allocates nothing. One thread, the one that reads the device.
+/// Each period is integrated in kSubSteps equal steps by the implicit midpoint rule. The rule
+/// changes the energy of the linear part by exactly the work done and lost, so that the integration
+/// itself causes no limit cycle. The same forces and targets give the same bits; time counts in
+/// periods. Allocates nothing. One thread, the one that reads the device.
 class OperatorAndDevice
 {
 public:
-    /// Sub-steps a period; delays count in whole ones.
+    /// Number of sub-steps in a period; delays are rounded to whole sub-steps.
     static constexpr std::uint32_t kSubSteps = 20;
-    static constexpr std::uint32_t kDelayMaxPeriods = 8; ///< Longest delay.
+    static constexpr std::uint32_t kDelayMaxPeriods = 8; ///< Longest delay of a device.
 
     /// Refuses a device with a fault, values that are not finite or out of range, a period out of
     /// 1e-5 .. 0.1 s, a delay over kDelayMaxPeriods, a start outside the workspace, and a hand with
@@ -78,8 +79,8 @@ public:
     /// target moves to `target_m` at constant speed. Returns the measured position at its end.
     Vec3 step(const Vec3& force_n, const Vec3& target_m) noexcept;
 
-    /// Moves all at once with unchanged velocities: for OperatorRotation, whose coordinates are
-    /// reset each period.
+    /// Sets all three positions and keeps all velocities. Used by OperatorRotation, which resets
+    /// its coordinates each period.
     void place(const Vec3& device_m, const Vec3& hand_m, const Vec3& target_m) noexcept
     {
         device_m_ = device_m;
@@ -87,8 +88,8 @@ public:
         target_m_ = target_m;
     }
 
-    /// Drops forces under way and adds this damping to the device's own; finite and not negative.
-    /// The next step() with a force ends that.
+    /// Drops the forces of all earlier steps, and adds this damping to the device's own until
+    /// release_brake(). The damping must be finite and not negative. Forces of later steps act.
     void brake(double damping_n_s_per_m) noexcept;
     void release_brake() noexcept { brake_n_s_per_m_ = 0.0; }
 
@@ -104,7 +105,7 @@ public:
 private:
     explicit OperatorAndDevice(const OperatorAndDeviceOptions& options) noexcept;
 
-    /// Speeds in the middle of a sub-step.
+    /// Velocities in the middle of a sub-step.
     struct Midway
     {
         Vec3 device_m_per_s;
@@ -128,7 +129,7 @@ private:
     Vec3 hand_m_;
     Vec3 hand_m_per_s_{0.0, 0.0, 0.0};
     Vec3 target_m_;
-    std::array<Vec3, kDelayMaxPeriods + 1> forces_n_{}; ///< Forces given, newest first.
+    std::array<Vec3, kDelayMaxPeriods + 1> forces_n_{}; ///< Forces of the last steps, newest first.
     OperatorAndDeviceEnergy energy_;
 };
 

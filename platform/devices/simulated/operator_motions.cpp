@@ -24,17 +24,17 @@ namespace
 constexpr std::string_view kNames[] = {"script", "free",   "approach", "slide", "tap", "teleport",
                                        "spin",   "tremor", "turn",     "edge",  "peg"};
 
-/// Least room of the workspace around the start of a hand.
+/// Least distance from a hand's start to the workspace's end, in diagonals.
 constexpr double kRoom_diag = 0.05;
 
-/// Flies on the sphere of the gates.
-class FlyingHand final : public OperatorMotion
+/// Circles around the model through a landing site's gate, without contact.
+class FlyingOperator final : public OperatorMotion
 {
 public:
-    explicit FlyingHand(const OperatorScene& scene)
+    explicit FlyingOperator(const OperatorScene& scene)
         : centre_world_m_(centre_of(scene.anchors_world_m))
         , first_m_(find_landing_sites(scene.anchors_world_m, scene.diagonal_m, scene.tool_radius_m,
-                                      scene.hands_before)
+                                      scene.operators_before)
                        .front()
                        .gate_world_m -
                    centre_world_m_)
@@ -61,17 +61,17 @@ private:
     Phasor phasor_;
 };
 
-/// Jumps between the gates of the landing sites and their places on the model, in an order of its
-/// seed.
-class JumpingHand final : public OperatorMotion
+/// Jumps between the gates and the aims of the landing sites, in an order that the seed determines.
+class JumpingOperator final : public OperatorMotion
 {
 public:
-    JumpingHand(const OperatorScene& scene, std::uint64_t seed)
+    JumpingOperator(const OperatorScene& scene, std::uint64_t seed)
         : frames_between_(OperatorSchedule::frames_in(kRest_s, to_seconds(scene.period)) + 1)
         , seed_(seed)
     {
-        for (const LandingSite& site : find_landing_sites(scene.anchors_world_m, scene.diagonal_m,
-                                                          scene.tool_radius_m, scene.hands_before))
+        for (const LandingSite& site :
+             find_landing_sites(scene.anchors_world_m, scene.diagonal_m, scene.tool_radius_m,
+                                scene.operators_before))
         {
             places_world_m_.push_back(site.gate_world_m);
             places_world_m_.push_back(site.aim_world_m);
@@ -93,13 +93,13 @@ private:
     std::vector<Vec3> places_world_m_;
 };
 
-/// Another hand's motion with added tremor: on each axis three oscillations between 8 and 12 Hz, of
-/// up to 0.2 mm each, with frequencies and sizes of the seed; the first value is zero.
-class TremblingHand final : public OperatorMotion
+/// Adds tremor to another motion: on each axis three oscillations between 8 and 12 Hz, of up to 0.2
+/// mm each. The seed determines frequencies and sizes; the tremor starts at zero.
+class TremblingOperator final : public OperatorMotion
 {
 public:
-    TremblingHand(std::unique_ptr<OperatorMotion> hand, double period_s, std::uint64_t seed)
-        : hand_(std::move(hand))
+    TremblingOperator(std::unique_ptr<OperatorMotion> motion, double period_s, std::uint64_t seed)
+        : motion_(std::move(motion))
     {
         for (std::uint64_t i = 0; i < swings_.size(); ++i)
         {
@@ -108,10 +108,10 @@ public:
                           kSize_m * (0.75 + 0.25 * noise_at(seed, 2 * i + 1))};
         }
     }
-    [[nodiscard]] Vec3 start_world_m() const noexcept override { return hand_->start_world_m(); }
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return motion_->start_world_m(); }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
     {
-        Vec3 place_m = hand_->next_world_m(sense);
+        Vec3 place_m = motion_->next_world_m(sense);
         for (std::size_t i = 0; i < swings_.size(); ++i)
         {
             swings_[i].phasor.turn();
@@ -131,28 +131,29 @@ private:
         double size_m{0.0};
     };
 
-    std::unique_ptr<OperatorMotion> hand_;
-    std::array<Swing, 9> swings_; ///< Oscillations, axis by axis in turn.
+    std::unique_ptr<OperatorMotion> motion_;
+    std::array<Swing, 9> swings_; ///< Oscillation i acts on axis i % 3.
 };
 
-std::unique_ptr<OperatorMotion> make_hand(MotionKind kind, const OperatorScene& scene,
-                                          std::uint64_t seed,
-                                          std::unique_ptr<ScriptedOperator> script)
+std::unique_ptr<OperatorMotion> make_motion_of(MotionKind kind, const OperatorScene& scene,
+                                               std::uint64_t seed,
+                                               std::unique_ptr<ScriptedOperator> script)
 {
     switch (kind)
     {
     case MotionKind::free:
-        return std::make_unique<FlyingHand>(scene);
+        return std::make_unique<FlyingOperator>(scene);
     case MotionKind::approach:
         return std::make_unique<PressingOperator>(scene);
     case MotionKind::tap:
         return std::make_unique<TappingOperator>(scene);
     case MotionKind::teleport:
-        return std::make_unique<JumpingHand>(scene, seed);
+        return std::make_unique<JumpingOperator>(scene, seed);
     case MotionKind::spin:
         return std::make_unique<SpinningOperator>(scene);
     case MotionKind::tremor:
-        return std::make_unique<TremblingHand>(std::move(script), to_seconds(scene.period), seed);
+        return std::make_unique<TremblingOperator>(std::move(script), to_seconds(scene.period),
+                                                   seed);
     case MotionKind::turn:
         return std::make_unique<RotatingOperator>(scene);
     case MotionKind::edge:
@@ -189,8 +190,8 @@ Result<MadeMotion, Refusal> make_motion(MotionKind kind, const OperatorScene& sc
     MadeMotion made;
     made.centre_world_m = script.value()->centre_world_m();
     made.reach_m = script.value()->reach_m();
-    made.hand = make_hand(kind, played, seed, std::move(script).value());
-    const double start_m = (made.hand->start_world_m() - made.centre_world_m).norm();
+    made.motion = make_motion_of(kind, played, seed, std::move(script).value());
+    const double start_m = (made.motion->start_world_m() - made.centre_world_m).norm();
     made.reach_m = std::max(made.reach_m, start_m + kRoom_diag * scene.diagonal_m);
     return made;
 }

@@ -22,7 +22,7 @@ enum class MotionKind : std::uint8_t
     script,   ///< ScriptedOperator: flight, approach, slide with lift-offs, retreat.
     free,     ///< Moves around the model without contact.
     approach, ///< Descends to a landing site, presses and rests there.
-    slide,    ///< Like the script, but stays on the surface.
+    slide,    ///< The script without lift-offs.
     tap,      ///< Two taps a second at one place.
     teleport, ///< Jumps twice a second to another place, on the model or around it.
     spin,     ///< Presses and circles at one place, twice a second.
@@ -42,7 +42,7 @@ inline constexpr std::string_view kMotionNames =
 /// A motion and the workspace that contains it.
 struct MadeMotion
 {
-    std::unique_ptr<OperatorMotion> hand;
+    std::unique_ptr<OperatorMotion> motion;
     Vec3 centre_world_m{Vec3::Zero()};
     double reach_m{0.0};
 };

@@ -8,18 +8,18 @@
 namespace tactus
 {
 
-/// Speeds of the scripted operator, in proportion to the diagonal, so that every size of model is
-/// treated alike.
+/// Speeds of the simulated operators, proportional to the model's diagonal, so that models of every
+/// size are treated alike.
 struct OperatorPace
 {
-    /// Distance from the surface at which it slows down.
+    /// Distance from the surface, in diagonals, below which an approach slows down.
     static constexpr double kSlowDown_diag = 0.1;
 
     double flight_m_per_s;
     double approach_m_per_s;
     double lift_m_per_s;
     double retreat_m_per_s;
-    /// Speed of at most 0.3 m/s: 0.1 kg at that speed strike a wall of 500 N/m with 2 N.
+    /// Speed at the touch, at most 0.3 m/s, at which 0.1 kg strikes a wall of 500 N/m with 2 N.
     double touch_m_per_s;
     double acceleration_m_per_s2;
 
@@ -33,8 +33,8 @@ struct OperatorPace
     {
     }
 
-    /// The speed `speed_m_per_s`, or less if the hand could not stop within `distance_m`. Assumes
-    /// 60 % of its deceleration, so that it does stop in time.
+    /// Returns the smaller of `speed_m_per_s` and the speed from which the hand stops within
+    /// `distance_m` at 60 % of its deceleration.
     [[nodiscard]] double stoppable(double speed_m_per_s, double distance_m) const noexcept
     {
         constexpr double kBrakingShare = 0.6;
@@ -42,8 +42,8 @@ struct OperatorPace
         return std::min(speed_m_per_s, std::sqrt(2.0 * braking * distance_m));
     }
 
-    /// Speed that falls from `fast_m_per_s` to touching speed over the last `zone_m` before the
-    /// surface.
+    /// Speed at `gap_m` from the surface. Falls from `fast_m_per_s` to touch_m_per_s over the last
+    /// `zone_m`.
     [[nodiscard]] double slowing(double fast_m_per_s, double gap_m, double zone_m) const noexcept
     {
         return touch_m_per_s + (fast_m_per_s - touch_m_per_s) * smoothstep(gap_m / zone_m);

@@ -10,14 +10,14 @@ namespace tactus
 namespace
 {
 
-/// Rotation vector from one rotation to the other, about the world's axes.
+/// Rotation vector that takes `from` to `to`, about the world's axes.
 Vec3 way_between(const Mat3& from, const Mat3& to) noexcept
 {
     return rotation_vector(orthonormalised(to * from.transpose()));
 }
 
-/// Options of the equivalent OperatorAndDevice, with unlimited reach. A device without a torque
-/// gets none.
+/// Options of the OperatorAndDevice that simulates the angles, with unlimited reach. Limits that
+/// the simulation doesn't use are set to 1.
 OperatorAndDeviceOptions in_angles(const OperatorRotationOptions& options)
 {
     const RotationLimits& turn = options.device;
@@ -44,7 +44,7 @@ Result<OperatorRotation, Refusal> OperatorRotation::create(const OperatorRotatio
     auto body = OperatorAndDevice::create(in_angles(options));
     if (!body)
     {
-        return Refusal{"turning, " + body.error().text};
+        return Refusal{"rotation of the " + body.error().text};
     }
     return OperatorRotation(options, body.value());
 }
@@ -74,7 +74,8 @@ void OperatorRotation::step(const Vec3& torque_nm, const Mat3& target) noexcept
     target_ = target;
 }
 
-/// Rotation by a small angle changes the vector part by half of it.
+/// Rounds the quaternion's vector part to steps of half a quantum, since a small angle changes it
+/// by half the angle.
 Quaternion OperatorRotation::measured() const noexcept
 {
     Quaternion measured = to_quaternion(device_);

@@ -12,23 +12,23 @@ struct OperatorRotationOptions
 {
     RotationLimits device; ///< Rotation limits; inertia above zero.
     double delay_s{0.0};
-    /// Wrist and its grip: kg m^2, N m/rad, N m s/rad in place of the units in the names.
+    /// Wrist and its grip. Units are kg m^2, N m/rad and N m s/rad in place of those in the names.
     OperatorLimb wrist;
     double period_s{1e-3};
-    Mat3 start{Mat3::Identity()}; ///< Initial rotation of all; orthonormal to rounding.
+    Mat3 start{Mat3::Identity()}; ///< Initial rotation of device and hand; orthonormal.
 };
 
 /// Rotation of a held device by the hand: OperatorAndDevice with angles for displacements, moments
 /// of inertia for masses and torques for forces.
 ///
-/// Two bodies with the same inertia about each axis rotate as point masses move, while the springs
-/// between them are turned little: x is the rotation since the period began, and each period
-/// measures the springs again as rotations between the bodies. About one axis this is exact, and so
-/// is the energy balance; about several the springs' energy changes at a new period by the square
-/// of their deflection.
+/// A body with the same inertia about each axis rotates as a point mass moves, while the springs
+/// are turned little. A coordinate is the rotation since the period began. Each period measures the
+/// springs again, as rotations between the bodies. About one axis this is exact, and so is the
+/// energy balance. About several axes each new period changes the springs' energy by the square of
+/// their deflection.
 ///
-/// Nothing is computed before the first rotation. Allocates nothing. One thread, as
-/// OperatorAndDevice.
+/// Computes nothing before the first torque or rotation of the target. Allocates nothing. One
+/// thread, as OperatorAndDevice.
 class OperatorRotation
 {
 public:
@@ -40,11 +40,11 @@ public:
     /// constant speed.
     void step(const Vec3& torque_nm, const Mat3& target) noexcept;
 
-    /// Brakes like OperatorAndDevice, in N m s/rad.
+    /// Brakes like OperatorAndDevice::brake(), in N m s/rad.
     void brake(double damping_nm_s_per_rad) noexcept { body_.brake(damping_nm_s_per_rad); }
     void release_brake() noexcept { body_.release_brake(); }
 
-    /// Rotation in steps of the quantum about each axis.
+    /// Measured rotation, in steps of quantum_rad about each axis.
     [[nodiscard]] Quaternion measured() const noexcept;
     /// True rotation, unknown to a controller.
     [[nodiscard]] const Mat3& rotation() const noexcept { return device_; }

@@ -8,8 +8,8 @@
 namespace tactus
 {
 
-/// Schedule of the scripted operator in frames, in shares of the run, so that short runs have all
-/// phases. In 3 s flight and retreat together take less than a tenth.
+/// Schedule of the scripted operator. Times are shares of the run, so that short runs have all
+/// phases. Flight and retreat together take less than a tenth of a run of 3 s.
 struct OperatorSchedule
 {
     double flight_s;

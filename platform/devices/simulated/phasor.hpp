@@ -12,8 +12,8 @@ class Phasor
 {
 public:
     Phasor() = default;
-    /// Rotates `turns_per_s` times a second; at most a tenth of a turn a period, and then 0.2 %
-    /// slow.
+    /// `turns_per_s`: turns a second, at most a tenth of a turn a period; there the rotation is 0.2
+    /// % slow.
     Phasor(double turns_per_s, double period_s) noexcept
     {
         constexpr double kPi = 3.14159265358979324;

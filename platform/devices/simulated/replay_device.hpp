@@ -18,22 +18,22 @@ namespace tactus
 
 struct ReplayDeviceOptions
 {
-    /// Recorded readings, at least one; they are renumbered.
+    /// Recorded readings, at least one; `frame` is renumbered.
     std::vector<DeviceSample> readings;
     std::int64_t rate_hz{1'000};    ///< Rate of the readings; above zero.
     DeviceLimits limits;            ///< Limits reported in info().
-    double speed_max_m_per_s{10.0}; ///< Finite and above zero.
+    double speed_max_m_per_s{10.0}; ///< Reported in info(); finite, above zero.
 };
 
-/// A recorded hand: reading k is the recorded reading k, independent of forces, delays and faulty
-/// recorded positions. Forces and torques are accepted, but move nothing. After the last reading it
-/// is disconnected, at its last place; readings still count.
+/// A device that replays recorded readings: reading k is recorded reading k, independent of forces
+/// and time. Forces and torques are accepted, but move nothing. After the last recorded reading the
+/// device is disconnected and keeps its last position; later readings are still numbered.
 ///
-/// All readings are in memory from the start: read() takes one and no more.
+/// All readings are in memory from the start, so read() only copies one.
 class ReplayDevice final : public HapticDevice
 {
 public:
-    /// Least radius of the workspace, so that a hand at rest has one.
+    /// Least radius of the workspace, for recordings of a hand at rest.
     static constexpr double kReachMin_m = 1e-3;
 
     /// Refuses readings without any valid position, a rate that is not above zero, and a largest

@@ -15,7 +15,7 @@ namespace tactus
 namespace
 {
 
-/// Tangents of half the angle: 30 and 2 degrees.
+/// Tangents of half the largest angles: 30 and 2 degrees.
 constexpr double kTurnHalfTangent = 0.2679;
 constexpr double kTiltHalfTangent = 0.01746;
 constexpr double kSwingsPerSecond = 0.5;
@@ -26,7 +26,7 @@ constexpr double kTurnPressTime_s = 0.3;
 constexpr double kNormalTime_s = 0.02;
 constexpr double kTurnMax_rad_per_s = 4.0;
 
-/// Start height clear of the model: the tool extends up to twice the hand's radius.
+/// Start height above the model, in tool radii: the tool extends up to twice that radius.
 constexpr double kPegClearRadii = 2.2;
 constexpr double kPegClear_diag = 0.05;
 constexpr double kPegSpeed_diag_per_s = 0.5;
@@ -35,7 +35,7 @@ constexpr double kPegSpeedMax_m_per_s = 0.3;
 constexpr double kPress_n = 1.0;
 constexpr double kPress_n_per_diagonal_m = 5.0;
 constexpr double kPressed_s = 0.02;
-constexpr double kTilt_s = 4.0; ///< Time of a swing about either axis.
+constexpr double kTilt_s = 4.0; ///< Time of two swings, one about each axis.
 constexpr double kOut_s = 0.5;
 constexpr double kOut_diag = 1.0 / 6.0;
 constexpr double kChangeGrip_s = 0.6;
@@ -49,7 +49,7 @@ double highest_m(const OperatorScene& scene) noexcept
         ->z();
 }
 
-/// 0 at both ends of a phase, 1 in its middle.
+/// Smooth function of a phase's elapsed share: 0 at both ends, 1 in the middle.
 double there_and_back(double share) noexcept
 {
     return OperatorPace::smoothstep(2.0 * std::min(share, 1.0 - share));
@@ -99,8 +99,8 @@ Vec3 EdgeOperator::next_world_m(const OperatorSense& sense) noexcept
     return way_->next_world_m(sense);
 }
 
-/// Rotates the tool from the normal to the felt one; the rest beyond the wrist's speed follows
-/// later.
+/// Rotates the tool as the felt normal rotates, no faster than the wrist; the rest follows in later
+/// frames.
 void EdgeOperator::turn_with(const Vec3& felt) noexcept
 {
     if (!has_touched_)

@@ -14,8 +14,8 @@
 namespace tactus
 {
 
-/// Presses like PressingOperator and rotates the tool about the world's x, y and z, 30 degrees to
-/// and fro, an axis every 2 s.
+/// Presses like PressingOperator. Rotates the tool about the world's x, y and z axes in turn, 30
+/// degrees to and fro, 2 s for each axis.
 class RotatingOperator final : public LandedOperator
 {
 public:
@@ -28,8 +28,8 @@ private:
     WristSwings swings_;
 };
 
-/// Follows another hand's path and rotates the tool with the surface: with the direction of the
-/// felt force, at up to 4 rad/s.
+/// Follows the path of `way` and rotates the tool with the surface, whose normal is the direction
+/// of the felt force. The tool rotates at up to 4 rad/s.
 class EdgeOperator final : public OperatorMotion
 {
 public:
@@ -45,14 +45,15 @@ private:
     ContactSlide feeling_; ///< Detects touches.
     double period_s_;
     bool has_touched_{false};
-    Vec3 normal_{Vec3::UnitZ()}; ///< Normal of the surface; the tool keeps its initial angle to it.
+    Vec3 normal_{Vec3::UnitZ()}; ///< Normal that the tool follows, at its initial angle to it.
     Mat3 rotation_{Mat3::Identity()};
 };
 
-/// Descends along the world's z through the middle of the model, like a peg into a hole, until it
-/// is pressed with about 1 N; tilts the tool by 2 degrees about x and y; withdraws it by a sixth of
-/// a diagonal. There, for 0.6 s, it presses button 0, opens the gripper, and moves up and back.
-/// Then it descends again. Without a contact it reverses half a diagonal below the middle.
+/// Operator that moves the tool like a peg in a hole. It descends along the world's z through the
+/// middle of the model, until the force on the hand is about 1 N. Then it tilts the tool by 2
+/// degrees about x and y, and withdraws it by a sixth of a diagonal. There, for 0.6 s, it presses
+/// button 0, opens the gripper, and moves up and back. Then it descends again. Without a contact it
+/// reverses half a diagonal below the middle.
 class PegOperator final : public OperatorMotion
 {
 public:

@@ -14,26 +14,27 @@ namespace tactus
 namespace
 {
 
-/// Distance before the expected surface within which the direction is fixed: at the aim itself it
-/// would swing around.
+/// Distance from the aim, in diagonals, below which the approach keeps its direction: at the aim
+/// itself the direction would swing around.
 constexpr double kSteerUntilDiag = 0.05;
-/// Mean share of the flight's largest speed, including start and end.
+/// Mean speed of the flight, including start and end, as a share of its largest speed.
 constexpr double kMeanSpeedShare = 0.8;
 constexpr double kGateReachedDiag = 0.02;
-/// Distance past the aim at which a site is given up.
+/// Distance past the aim, in diagonals, at which a site is given up.
 constexpr double kApproachBeyondDiag = 0.5;
 constexpr double kLiftRadii = 3.0;
 constexpr double kSlowDownRadii = 2.0;
-/// Distance past the last place at which a descent has failed, plus the dent of the pressing.
+/// Distance past the last place at which a descent has failed: in tool radii, and in m for the dent
+/// of the pressing.
 constexpr double kDescendBeyondRadii = 4.0;
 constexpr double kDescendBeyondM = 0.005;
-/// Share of a distance that is corrected in a second.
+/// Share of a distance that is corrected per second.
 constexpr double kClimbPerS = 20.0;
 
 /// Largest deflection of the hand's spring in contact: at 200 N/m, 4 N.
 constexpr double kLeashM = 0.02;
 constexpr double kLostAfterS = 0.05;
-/// Time longer than any fade of a force (ForceFader's kFadeTime_s).
+/// Duration of a force after which it is a contact: no fade of a force lasts longer (kFadeTime_s).
 constexpr double kSureAfterS = 0.05;
 constexpr double kGoodContactS = 0.5;
 constexpr std::uint32_t kLossesBeforeBackOff = 4;
@@ -41,8 +42,8 @@ constexpr double kSettleBeforeLiftS = 0.1;
 constexpr double kPatienceS = 1.0;
 constexpr double kPlaceSpacingS = 0.064;
 
-/// Start on the orbit, at the distance from the gate that lets the flight take its share of the
-/// run. The rotation is given by the tangent of its half, which needs no trigonometry.
+/// Point on the orbit from which a path of about `way_m` leads to the gate. The rotation is given
+/// by the tangent of half its angle, so it needs no trigonometry.
 Vec3 orbit_start(const LandingSite& site, const Vec3& centre, double way_m) noexcept
 {
     const double half_tangent = std::min(0.5 * way_m / site.orbit_radius_m, 1.2);
@@ -57,27 +58,27 @@ std::string find_fault(const OperatorScene& scene)
 {
     if (scene.anchors_world_m.empty())
     {
-        return "hand script: the model has no anchor points to touch";
+        return "simulated operator: the model has no anchor points to touch";
     }
     const auto finite = [](const Vec3& point) { return std::isfinite(point.squaredNorm()); };
     if (!std::ranges::all_of(scene.anchors_world_m, finite))
     {
-        return "hand script: an anchor point is not finite";
+        return "simulated operator: an anchor point is not finite";
     }
     if (!std::isfinite(scene.diagonal_m) || scene.diagonal_m <= 0.0)
     {
-        return "hand script: the model's diagonal must be finite and above 0 m";
+        return "simulated operator: the model's diagonal must be finite and above 0 m";
     }
     if (!std::isfinite(scene.tool_radius_m) || scene.tool_radius_m <= 0.0 ||
         scene.tool_radius_m > scene.diagonal_m)
     {
-        return "hand script: tool radius " + std::to_string(scene.tool_radius_m) +
+        return "simulated operator: tool radius " + std::to_string(scene.tool_radius_m) +
                " m is out of range (0, " + std::to_string(scene.diagonal_m) +
                "] m (the model's diagonal)";
     }
     if (scene.period <= Duration{})
     {
-        return "hand script: the period must be above 0 ns";
+        return "simulated operator: the period must be above 0 ns";
     }
     return {};
 }
@@ -103,7 +104,7 @@ ScriptedOperator::ScriptedOperator(const OperatorScene& scene)
     , place_spacing_frames_(OperatorSchedule::frames_in(kPlaceSpacingS, period_s_) + 1)
     , centre_world_m_(centre_of(scene.anchors_world_m))
     , sites_(find_landing_sites(scene.anchors_world_m, diagonal_m_, tool_radius_m_,
-                                scene.hands_before))
+                                scene.operators_before))
     , start_world_m_(orbit_start(sites_.front(), centre_world_m_,
                                  kMeanSpeedShare * pace_.flight_m_per_s * schedule_.flight_s))
     , position_world_m_(start_world_m_)
@@ -173,7 +174,7 @@ Vec3 ScriptedOperator::fly() noexcept
         enter(OperatorPhase::approach);
     }
     const Vec3 along = part_across(to_gate, outward);
-    // Opposite to the gate every direction is as long.
+    // Opposite to the gate all directions are equally long.
     const bool opposite = along.norm() < 1e-3 * radius_m && to_gate.dot(outward) < 0.0;
     const Vec3 tangent = opposite ? any_across(outward) : direction_or_zero(along);
     const double climb = kClimbPerS * (site().orbit_radius_m - radius_m);
@@ -226,8 +227,9 @@ Vec3 ScriptedOperator::slide(const OperatorSense& sense) noexcept
     return velocity;
 }
 
-/// Returns to the last place of contact and continues in the other direction; after repeated
-/// failures, at another site. A false touch is ignored.
+/// Ends a slide that has lost contact. Returns to the last place of contact and continues in the
+/// other direction; after repeated failures, goes to another site. After a false touch it resumes
+/// the phase before.
 void ScriptedOperator::lose_contact() noexcept
 {
     ++losses_;
@@ -258,7 +260,7 @@ Vec3 ScriptedOperator::lift(const OperatorSense& sense) noexcept
     {
         enter(OperatorPhase::descend);
     }
-    // The target is half a radius too far, or the hand would creep to the height.
+    // The target is half a radius higher than needed; otherwise the hand would creep to the height.
     const double left_m = height_m - risen_m + 0.5 * tool_radius_m_;
     return place_.normal * pace_.stoppable(pace_.lift_m_per_s, std::max(left_m, 0.0));
 }
@@ -339,15 +341,16 @@ void ScriptedOperator::feel(const OperatorSense& sense) noexcept
     }
 }
 
-/// A force alone is no touch, since a force that fades after a fault damps the motion a little, in
-/// the air too: a surface pushes against the motion, and harder or longer than that.
+/// True at a touch: a surface pushes against the motion, and its force is firm or lasts. A force
+/// alone is no touch, since a force that fades after a fault damps the motion a little, in the air,
+/// too.
 bool ScriptedOperator::meets(const OperatorSense& sense, const Vec3& way) const noexcept
 {
     return slide_.is_touching(sense) && sense.force_world_n.dot(way) < 0.0 &&
            (slide_.is_firm(sense) || felt_s_ >= kSureAfterS);
 }
 
-/// Starts a slide. The last place remains the one to return to until this touch is sure.
+/// Starts a slide. place_ keeps the last place of contact until this touch is sure.
 void ScriptedOperator::land(const OperatorSense& sense, const Vec3& heading_hint) noexcept
 {
     slide_.begin(sense, heading_hint);

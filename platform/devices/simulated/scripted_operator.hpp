@@ -15,11 +15,11 @@
 #include <memory>
 #include <vector>
 
-// create() allocates, before the loop; the rest is the haptic thread's, as OperatorMotion says.
+// create() allocates; call it before the loop. Threads of all else: see OperatorMotion.
 namespace tactus
 {
 
-/// Data of a model for the default script, of any shape.
+/// Model, of any shape, and run for which a simulated operator is made.
 struct OperatorScene
 {
     /// Points on the surface, for instance the vertices of the coarse mesh; world frame, metres.
@@ -30,7 +30,7 @@ struct OperatorScene
     std::uint64_t frames_total{0}; ///< Frames of the run; the script retreats in the last of them.
     bool lifts_off{true};          ///< True: lifts off at times while it slides.
     /// Number of earlier hands on the same model; each begins at another place.
-    std::size_t hands_before{0};
+    std::size_t operators_before{0};
 };
 
 enum class OperatorPhase
@@ -41,17 +41,17 @@ enum class OperatorPhase
     lift,      ///< Lift off the surface along the last normal, by three tool radii.
     come_back, ///< Return to above the last place of contact, after sliding over an edge.
     descend,   ///< Descent along the last normal to the last place of contact.
-    back_off,  ///< Retreat to the next site after nothing was found.
-    retreat    ///< Departure in the last moments of the run.
+    back_off,  ///< Return to the gate, then to the next site, after a failed search.
+    retreat    ///< Departure from the model at the end of the run.
 };
 
-/// The default script: free flight, approach, slide with lift-offs, retreat. It senses its way and
-/// works on any model. In runs of 3 s or more at 1 kHz it lifts off at least three times and is in
-/// contact in about two thirds of all frames or more.
+/// The default script: free flight, approach, slide with lift-offs, retreat. The hand finds its way
+/// by the felt force, on any model. A run of 3 s or more at 1 kHz has at least three lift-offs. The
+/// hand is then in contact in about two thirds of all frames or more.
 ///
 /// Every phase requests a velocity; the hand follows with limited acceleration, so its path is
-/// smooth. A state machine over frame indices with arithmetic and square roots only: the same
-/// senses give the same bits.
+/// smooth. The state machine counts frames, and uses arithmetic and square roots only. So the same
+/// inputs give the same bits.
 class ScriptedOperator final : public OperatorMotion
 {
 public:
@@ -117,15 +117,16 @@ private:
     Vec3 velocity_m_per_s_{Vec3::Zero()};
     std::size_t site_{0};
     Vec3 approach_direction_{Vec3::Zero()};
-    double felt_s_{0.0}; ///< Duration of the force in this phase.
+    double felt_s_{0.0}; ///< Duration of the uninterrupted force in this phase.
     ContactSlide slide_;
-    Place place_;        ///< Place 64 to 128 ms ago; from before a landing until that is sure.
+    /// Place 64 to 128 ms ago; not changed by a landing until the landing is sure.
+    Place place_;
     Place newest_place_; ///< Place up to 64 ms ago.
     OperatorPhase landed_from_{OperatorPhase::approach};
     bool is_landing_sure_{false};
     Vec3 released_world_m_{Vec3::Zero()};
     bool released_{false};
-    std::uint32_t lift_offs_{0}; ///< Those that reached the full height.
+    std::uint32_t lift_offs_{0}; ///< Number of lift-offs that reached the full height.
     std::uint32_t losses_{0};
     bool landed_{false};
 };

@@ -30,8 +30,8 @@ std::string find_bad_option(const SimulatedDeviceOptions& options)
         !is_not_negative(options.brake_damping_nm_s_per_rad) ||
         !is_not_negative(options.gripper_force_max_n) || !is_not_negative(options.load.mass_kg))
     {
-        return "simulated device: the largest speed must be finite and above zero, the brake's "
-               "dampings, the gripper's force and the load's mass finite and not negative";
+        return "simulated device: the largest speed must be finite and above zero; the brake's "
+               "dampings, the gripper's force and the load's mass must be finite and not negative";
     }
     if (options.watchdog && (*options.watchdog <= Duration{} || options.clock == nullptr))
     {
@@ -56,40 +56,41 @@ void set_brake(auto& body, bool is_on, double damping) noexcept
 } // namespace
 
 Result<std::unique_ptr<SimulatedDevice>, Refusal>
-SimulatedDevice::create(const SimulatedDeviceOptions& options, std::unique_ptr<OperatorMotion> hand)
+SimulatedDevice::create(const SimulatedDeviceOptions& options,
+                        std::unique_ptr<OperatorMotion> motion)
 {
-    TACTUS_ASSERT(hand != nullptr);
+    TACTUS_ASSERT(motion != nullptr);
     if (std::string wrong = find_bad_option(options); !wrong.empty())
     {
         return Refusal{std::move(wrong)};
     }
     const auto body = OperatorAndDevice::create(
         {options.device, options.hand, 1.0 / static_cast<double>(options.rate_hz),
-         hand->start_world_m(), options.workspace_centre_world_m, options.workspace_radius_m});
+         motion->start_world_m(), options.workspace_centre_world_m, options.workspace_radius_m});
     if (!body)
     {
         return body.error();
     }
-    std::optional<OperatorRotation> turn;
+    std::optional<OperatorRotation> rotation;
     if (options.device.rotation.is_measured)
     {
         const auto made = OperatorRotation::create(
             {options.device.rotation, options.device.delay_s, options.wrist,
-             1.0 / static_cast<double>(options.rate_hz), hand->grip().rotation});
+             1.0 / static_cast<double>(options.rate_hz), motion->grip().rotation});
         if (!made)
         {
             return made.error();
         }
-        turn = made.value();
+        rotation = made.value();
     }
     return std::unique_ptr<SimulatedDevice>(
-        new SimulatedDevice(options, body.value(), turn, std::move(hand)));
+        new SimulatedDevice(options, body.value(), rotation, std::move(motion)));
 }
 
 SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options,
                                  const OperatorAndDevice& body,
-                                 const std::optional<OperatorRotation>& turn,
-                                 std::unique_ptr<OperatorMotion> hand)
+                                 const std::optional<OperatorRotation>& rotation,
+                                 std::unique_ptr<OperatorMotion> motion)
     : options_(options)
     , info_{"sim",
             options.device,
@@ -98,10 +99,10 @@ SimulatedDevice::SimulatedDevice(const SimulatedDeviceOptions& options,
             options.speed_max_m_per_s,
             SimulatedDeviceOptions::kRateMinHz,
             SimulatedDeviceOptions::kRateMaxHz,
-            hand->grip().gripper_m ? options.gripper_force_max_n : 0.0}
-    , hand_(std::move(hand))
+            motion->grip().gripper_m ? options.gripper_force_max_n : 0.0}
+    , motion_(std::move(motion))
     , body_(body)
-    , turn_(turn)
+    , rotation_(rotation)
 {
 }
 
@@ -121,12 +122,12 @@ DeviceSample SimulatedDevice::read() noexcept
     sample.time = MonotonicTime{period_at(periods_).ns};
     sample.frame = status_.frames++;
     sample.valid = true;
-    if (turn_)
+    if (rotation_)
     {
-        sample.rotation_world = turn_->measured();
-        sample.angular_velocity_world_rad_per_s = to_array(turn_->velocity_rad_per_s());
+        sample.rotation_world = rotation_->measured();
+        sample.angular_velocity_world_rad_per_s = to_array(rotation_->velocity_rad_per_s());
     }
-    const OperatorGrip grip = hand_->grip();
+    const OperatorGrip grip = motion_->grip();
     sample.buttons = grip.buttons;
     sample.gripper_m = grip.gripper_m;
     return sample;
@@ -151,7 +152,8 @@ std::uint64_t SimulatedDevice::periods_due() const noexcept
     return static_cast<std::uint64_t>(std::clamp<std::int64_t>(due, 1, options_.rate_hz));
 }
 
-/// Computed from the index, not summed, so that rates without a whole period in ns do not drift.
+/// Time of `index` periods. A sum of rounded periods would drift at rates without a whole period in
+/// ns.
 Duration SimulatedDevice::period_at(std::uint64_t index) const noexcept
 {
     const auto whole_s = static_cast<std::int64_t>(index) / options_.rate_hz;
@@ -165,13 +167,13 @@ MonotonicTime SimulatedDevice::now() const noexcept
                                      : options_.clock->now();
 }
 
-/// True if the device's watchdog has ended the force.
+/// True if the device's watchdog has ended the force before `time`.
 bool SimulatedDevice::is_watched_out(MonotonicTime time) const noexcept
 {
     return options_.watchdog && time - written_ >= *options_.watchdog;
 }
 
-/// Wrench of the last write at that time.
+/// Part of the last written wrench that brake and watchdog leave at `time`.
 Wrench SimulatedDevice::wrench_at(MonotonicTime time) const noexcept
 {
     const double share = is_watched_out(time) ? 0.0 : brake_.share_at(time);
@@ -195,21 +197,21 @@ Wrench SimulatedDevice::felt_wrench() const noexcept
 
 void SimulatedDevice::integrate_one_period(bool braked, const Wrench& wrench) noexcept
 {
-    const Mat3 rotation = turn_ ? turn_->rotation() : Mat3::Identity();
+    const Mat3 rotation = rotation_ ? rotation_->rotation() : Mat3::Identity();
     const Vec3 weight_n = options_.load.weight_n() * options_.load.down_world;
     const Vec3 force_n = to_vec3(wrench.force_world_n) + weight_n;
     const Vec3 torque_nm =
         to_vec3(wrench.torque_world_nm) + (rotation * options_.load.centre_m).cross(weight_n);
     set_brake(body_, braked, options_.brake_damping_n_s_per_m);
     OperatorSense sense{periods_, body_.position_m(), force_n};
-    sense.device_rotation = turn_ ? turn_->rotation() : sense.device_rotation;
+    sense.device_rotation = rotation_ ? rotation_->rotation() : sense.device_rotation;
     sense.torque_world_nm = torque_nm;
-    const Vec3 target_m = hand_->next_world_m(sense);
+    const Vec3 target_m = motion_->next_world_m(sense);
     static_cast<void>(body_.step(force_n, target_m));
-    if (turn_)
+    if (rotation_)
     {
-        set_brake(*turn_, braked, options_.brake_damping_nm_s_per_rad);
-        turn_->step(torque_nm, hand_->grip().rotation);
+        set_brake(*rotation_, braked, options_.brake_damping_nm_s_per_rad);
+        rotation_->step(torque_nm, motion_->grip().rotation);
     }
 }
 

@@ -13,8 +13,8 @@ namespace tactus
 class WristSwings
 {
 public:
-    /// Swings about x, y and so on, `axes` of them. The largest angle is twice the arc tangent of
-    /// `half_tangent`.
+    /// `axes`: number of axes to swing about, x first. `half_tangent`: tangent of half the largest
+    /// angle.
     WristSwings(double half_tangent, double swings_per_s, int axes, double period_s) noexcept
         : half_tangent_(half_tangent), axes_(axes), phasor_(swings_per_s, period_s)
     {
@@ -28,7 +28,7 @@ public:
         axis_ = was_back && phasor_.sin() >= 0.0 ? (axis_ + 1) % axes_ : axis_;
     }
 
-    /// Rotation now. The third power starts and ends at rest.
+    /// Present rotation. The third power of the sine lets each swing start and end at rest.
     [[nodiscard]] Mat3 rotation() const noexcept
     {
         const double sine = phasor_.sin();

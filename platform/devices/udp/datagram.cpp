@@ -69,10 +69,10 @@ static_assert(kNameBytes == kDeviceNameMax + 1);
 constexpr std::array<std::size_t, 3> kTagAt{264, 152, 96};
 constexpr std::size_t kKindAt = 6;
 
-/// Limit beyond which no sample is usable anyway (docs/conventions.md).
+/// Bound of each coordinate; samples beyond it are not usable anyway (docs/conventions.md).
 constexpr double kCoordinateMax = 1e6;
 
-/// Sums of two such times don't overflow.
+/// Largest device time; sums of two such times don't overflow.
 constexpr std::int64_t kTimeMax_ns = std::int64_t{1} << 62;
 
 // Flag of a description.
@@ -116,7 +116,8 @@ struct Envelope
     std::uint16_t version{0};
 };
 
-/// Checks the common part of all datagrams, including the checksum; none if it is sound.
+/// Checks header, size and checksum, which all kinds have, and fills `envelope`. Returns the fault;
+/// none if all are sound.
 std::optional<DatagramFault> open(std::span<const std::byte> bytes, Envelope& envelope) noexcept
 {
     ByteReader reader(bytes);
@@ -153,7 +154,7 @@ std::optional<DatagramFault> open(std::span<const std::byte> bytes, Envelope& en
     return is_addressed ? std::nullopt : std::optional(DatagramFault::content);
 }
 
-/// False if the name is empty or bytes follow the zero that ends it.
+/// Reads a name that a zero ends. False if other bytes follow that zero.
 bool read_name(ByteReader& reader, std::string& name)
 {
     const auto field = reader.read<std::array<char, kNameBytes>>();
@@ -385,10 +386,10 @@ std::string_view text_of(DatagramFault fault) noexcept
         "wrong kind",
         "wrong checksum",
         "a value that is not finite or out of range",
-        "from somebody else while a device is attached",
-        "of another session",
-        "not newer than the last one",
-        "another device than the first one",
+        "from another sender while a device is attached",
+        "wrong session",
+        "not newer than the last datagram",
+        "a device other than the first one",
         "not authenticated by the key"};
     return kTexts.at(static_cast<std::size_t>(fault));
 }

@@ -12,18 +12,18 @@
 #include <string_view>
 #include <variant>
 
-/// The datagrams of docs/udp-device.md: of fixed size for each kind and version, little-endian,
-/// each ended by its CRC-32C. Any thread: values, and functions of their arguments alone; only a
-/// description's name allocates.
+/// Datagrams of docs/udp-device.md: of a fixed size for each kind and version, little-endian, with
+/// a CRC-32C at the end. Any thread: values, and functions of their arguments alone. Only the name
+/// in a description allocates.
 namespace tactus::udp
 {
 
 inline constexpr std::uint32_t kMagic = 0x44544354; ///< "TCTD".
 inline constexpr std::uint16_t kVersion = 2;
-/// Older version still decoded: devices without rotation, buttons and gripper.
+/// Older version, still accepted: no rotation, buttons or gripper.
 inline constexpr std::uint16_t kVersionOfPoints = 1;
 
-/// Bytes of describe, sample and force, in version 1 and 2.
+/// Sizes in bytes by version (1, 2) and kind (describe, sample, force).
 inline constexpr std::array<std::array<std::size_t, 3>, 2> kBytes{{{200, 96, 72}, {288, 180, 120}}};
 inline constexpr std::size_t kDatagramBytesMax = 288;
 /// Authentication tag of a datagram in version 2: see Authenticator.
@@ -33,18 +33,18 @@ enum class Kind : std::uint16_t
 {
     describe = 1, ///< Device to controller: its description.
     sample = 2,   ///< Device to controller: one reading.
-    force = 3     ///< Controller to device.
+    force = 3     ///< Controller to device: wrench and state.
 };
 
 /// Sender and sequence of a datagram.
 struct Address
 {
     std::uint64_t instance{0}; ///< Number chosen by the device program when it starts; never 0.
-    std::uint64_t session{0};  ///< Number given by the controller; 0 in `describe`.
+    std::uint64_t session{0};  ///< Number assigned by the controller; 0 in `describe`.
     std::uint64_t sequence{0}; ///< Count of the sender's datagrams, from 1.
 };
 
-/// Description of a device; here the workspace's centre is in the device's coordinates.
+/// Description of a device. Its workspace centre is in the device's coordinates here.
 struct DescribeDatagram
 {
     Address address;
@@ -59,7 +59,7 @@ struct SampleDatagram
     std::array<double, 3> position_m{};
     std::optional<std::array<double, 3>> velocity_m_per_s;
     std::int64_t time_ns{0}; ///< Time on the device's own clock, in [0, 2^62].
-    bool valid{false};       ///< False: the position is ignored.
+    bool valid{false};       ///< False: pose, velocities and gripper are ignored.
     bool deadman_held{true};
     std::optional<std::array<double, 4>> rotation; ///< Unit quaternion x, y, z, w.
     std::optional<std::array<double, 3>> angular_velocity_rad_per_s;
@@ -74,7 +74,8 @@ struct ForceDatagram
     Address address;
     std::array<double, 3> force_n{};
     DeviceState state{DeviceState::idle};
-    std::uint64_t answers{0}; ///< Sequence of the device's last accepted datagram.
+    /// Sequence of the last datagram accepted from the device; 0: not known.
+    std::uint64_t answers{0};
     std::array<double, 3> torque_nm{};
     double gripper_force_n{0.0};
     std::uint16_t version{kVersion};
@@ -83,7 +84,7 @@ struct ForceDatagram
 
 class Authenticator;
 
-/// A coded datagram of the size of its kind and version.
+/// An encoded datagram. Its kind and version determine its size.
 class Datagram
 {
 public:
@@ -100,44 +101,44 @@ private:
     std::size_t size_{0};
 };
 
-/// Makes authentication tags by a key shared by both sides (docs/udp-device.md).
+/// Computes authentication tags with a key that both sides share (docs/udp-device.md).
 class Authenticator
 {
 public:
     virtual ~Authenticator() = default;
 
-    /// Tag of a datagram up to its checksum, with a tag of zeros. Any thread; neither allocates nor
-    /// waits.
+    /// Returns the tag of a datagram. `bytes` end before the checksum and have zeros in place of
+    /// the tag. Any thread; neither allocates nor waits.
     [[nodiscard]] virtual Tag tag_of(std::span<const std::byte> bytes) const noexcept = 0;
 };
 
-/// Adds the tag and updates the checksum. Version 2 only (asserted).
+/// Returns the datagram with its tag set and its checksum updated. Version 2 only (asserted).
 [[nodiscard]] Datagram authenticated(Datagram datagram,
                                      const Authenticator& authenticator) noexcept;
-/// True if a decodable datagram has the right tag; false for one of version 1.
+/// True if the tag of a decodable datagram is right; false for version 1, which has no tags.
 [[nodiscard]] bool is_authentic(std::span<const std::byte> bytes,
                                 const Authenticator& authenticator) noexcept;
 
-/// Encodes a datagram. A name longer than 31 bytes is cut. Fields that its version lacks are left
-/// out.
+/// Encodes a datagram. Cuts a name after 31 bytes, and omits fields that the datagram's version
+/// lacks.
 [[nodiscard]] Datagram encode(const DescribeDatagram& datagram) noexcept;
 [[nodiscard]] Datagram encode(const SampleDatagram& datagram) noexcept;
 [[nodiscard]] Datagram encode(const ForceDatagram& datagram) noexcept;
 
-/// Reasons to refuse a datagram. The first six are found by decode().
+/// Reasons to refuse a datagram. The first six are found by the decode functions.
 enum class DatagramFault : std::uint8_t
 {
     size,         ///< Size does not fit the kind.
     magic,        ///< Datagram of another protocol.
     version,      ///< Other version of this protocol.
-    kind,         ///< Kind not sent in this direction.
+    kind,         ///< Kind unknown, or not sent in this direction.
     checksum,     ///< Bytes changed in transit.
     content,      ///< Value not finite or out of its range, or reserved bit set.
     foreign,      ///< Sender other than the attached device.
     session,      ///< Sample of another session.
-    stale,        ///< Sequence not above the last accepted one.
-    other_device, ///< Description of another device than the first one: limits never change.
-    tag,          ///< Tag of another key.
+    stale,        ///< Sequence or time not above the last accepted one.
+    other_device, ///< Description that differs from the first one.
+    tag,          ///< Tag missing, or made with another key.
 };
 inline constexpr std::size_t kDatagramFaults = 11;
 /// Names in the order of DatagramFault.
@@ -145,7 +146,7 @@ inline constexpr std::array<const char*, kDatagramFaults> kDatagramFaultNames{
     "size",    "magic",   "version", "kind",         "checksum", "content",
     "foreign", "session", "stale",   "other_device", "tag"};
 
-/// Text of a fault, for instance "wrong size", to follow a colon.
+/// Text of a fault, for instance "wrong size", for use after a colon.
 [[nodiscard]] std::string_view text_of(DatagramFault fault) noexcept;
 
 /// Datagrams that a controller receives.
@@ -153,7 +154,8 @@ using FromDevice = std::variant<DescribeDatagram, SampleDatagram, DatagramFault>
 /// Datagrams that a device receives.
 using FromController = std::variant<ForceDatagram, DatagramFault>;
 
-/// Decodes a datagram. For DatagramFault::content, `wrong` is set to the value's name unless null.
+/// Decodes a datagram. `wrong` may be null; if the result is DatagramFault::content, `*wrong`
+/// becomes the name of the value at fault.
 [[nodiscard]] FromDevice decode_from_device(std::span<const std::byte> bytes,
                                             const char** wrong = nullptr);
 [[nodiscard]] FromController decode_from_controller(std::span<const std::byte> bytes);

@@ -30,7 +30,7 @@ Session::receive(std::span<const std::byte> bytes, const Endpoint& from, Monoton
     return std::get<DatagramFault>(datagram);
 }
 
-/// A repeated description is no fault: a device repeats it until it is answered.
+/// Handles a description. A repeated one is no fault: a device repeats it until it is answered.
 std::variant<Described, Sampled, DatagramFault>
 Session::describe(const DescribeDatagram& datagram, const Endpoint& from, MonotonicTime now)
 {
@@ -60,7 +60,7 @@ Session::describe(const DescribeDatagram& datagram, const Endpoint& from, Monoto
     return Described{};
 }
 
-/// True if a device is attached, or was until recently and had sent samples.
+/// True if a device is attached, or a silent one keeps its place.
 bool Session::is_taken(MonotonicTime now) const noexcept
 {
     return peer_.is_attached || (is_settled_ && last_time_ns_ >= 0 && now - heard_ <= place_);
@@ -122,8 +122,9 @@ Session::sample(const SampleDatagram& datagram, const Endpoint& from, MonotonicT
     return sampled;
 }
 
-/// Time on our clock: the device's intervals, undisturbed by the network, aligned to our clock at
-/// their start. Never decreases.
+/// Converts a device time to the controller's clock by an offset. The offset is set at the first
+/// sample and after a drift only, so the network's jitter doesn't disturb the intervals. Always
+/// increases.
 MonotonicTime Session::on_our_clock(std::int64_t time_ns, MonotonicTime now) noexcept
 {
     const bool is_first = last_time_ns_ < 0;

@@ -33,8 +33,8 @@ Endpoint from_system(const sockaddr_in& address) noexcept
     return {ntohl(address.sin_addr.s_addr), ntohs(address.sin_port)};
 }
 
-/// Makes the descriptor non-blocking and closed in children; false with errno set. wait() can use
-/// only descriptors that fit into an fd_set.
+/// Makes the descriptor non-blocking, and closed in started programs; false with errno set. Refuses
+/// descriptors that don't fit into the fd_set of wait().
 // NOLINTBEGIN(cppcoreguidelines-pro-type-vararg): the C library has no other.
 bool never_waits(int descriptor) noexcept
 {
@@ -51,8 +51,7 @@ bool never_waits(int descriptor) noexcept
 Refusal refuse_binding(const Endpoint& endpoint, int error)
 {
     return {"udp device: can't listen on " + text_of(endpoint) + " (" +
-            posix::name_of_error(error) +
-            "); it must be an address of this machine and a port that nobody uses"};
+            posix::name_of_error(error) + "); use an address of this machine and a free port"};
 }
 
 } // namespace
@@ -63,18 +62,18 @@ Result<Socket, Refusal> Socket::open(const std::string& address, int port)
     if (inet_pton(AF_INET, address.c_str(), &parsed) != 1)
     {
         return Refusal{"udp device: '" + address +
-                       "' is no numeric IPv4 address such as 127.0.0.1"};
+                       "' is not a numeric IPv4 address such as 127.0.0.1"};
     }
     if (port != 0 && (port < kPortMin || port > kPortMax))
     {
         return Refusal{"udp device: port " + std::to_string(port) +
-                       " is out of range 1024..65535 (0: any that is free)"};
+                       " is out of range 1024..65535 (0: any free port)"};
     }
     const Endpoint wanted{ntohl(parsed.s_addr), static_cast<std::uint16_t>(port)};
     Socket made(socket(AF_INET, SOCK_DGRAM, 0), wanted);
     if (made.descriptor_ < 0 || !never_waits(made.descriptor_))
     {
-        return Refusal{"udp device: the system gives no socket (" + posix::name_of_error(errno) +
+        return Refusal{"udp device: the system refused a socket (" + posix::name_of_error(errno) +
                        ")"};
     }
     sockaddr_in bound = to_system(wanted);
@@ -111,7 +110,7 @@ void Socket::wait(Duration time) const noexcept
     FD_ZERO(&readable);
     FD_SET(descriptor_, &readable);
     const timespec most{time.ns / kSecond_ns, time.ns % kSecond_ns};
-    // A datagram is found by receive(). poll() has no times below 1 ms.
+    // The result is not needed: receive() finds a datagram. poll() has no times below 1 ms.
     static_cast<void>(pselect(descriptor_ + 1, &readable, nullptr, nullptr, &most, nullptr));
 }
 

@@ -15,16 +15,16 @@
 namespace tactus::udp
 {
 
-/// A datagram socket that blocks only in wait(). send() may be called from any thread, the rest
-/// from one.
+/// A UDP socket that blocks only in wait(). send() may be called from any thread, the rest from
+/// one.
 class Socket
 {
 public:
     static constexpr int kPortMin = 1'024;
     static constexpr int kPortMax = 65'535;
 
-    /// Binds a socket to a numeric IPv4 address of this machine and a port in [kPortMin, kPortMax],
-    /// or 0 for any free one. Refuses others and occupied ones.
+    /// Opens a socket bound to a numeric IPv4 address of this machine and a port in [kPortMin,
+    /// kPortMax]; port 0 selects a free one. Refuses other values and ports in use.
     [[nodiscard]] static Result<Socket, Refusal> open(const std::string& address, int port);
 
     Socket(Socket&& other) noexcept;
@@ -34,15 +34,15 @@ public:
     /// Bound address and port.
     [[nodiscard]] const Endpoint& endpoint() const noexcept { return endpoint_; }
 
-    /// Waits until a datagram arrives or the time is over.
+    /// Waits until a datagram arrives, for `time` at most.
     void wait(Duration time) const noexcept;
 
     struct Received
     {
-        std::size_t bytes{0}; ///< Bytes of the datagram, cut to the buffer.
+        std::size_t bytes{0}; ///< Size of the datagram, cut to the buffer.
         Endpoint from;
     };
-    /// Receives one datagram; none if none is there.
+    /// Takes the next datagram from the system's queue; none if the queue is empty.
     [[nodiscard]] std::optional<Received> receive(std::span<std::byte> buffer) const noexcept;
 
     /// Sends a datagram; false if the system refused it.
@@ -58,7 +58,7 @@ private:
     Endpoint endpoint_;
 };
 
-/// "127.0.0.1:48500"
+/// Text such as "127.0.0.1:48500".
 [[nodiscard]] std::string text_of(const Endpoint& endpoint);
 
 } // namespace tactus::udp

@@ -47,13 +47,13 @@ std::string find_bad_option(const UdpDeviceOptions& options)
     return find_bad_time(options.times);
 }
 
-/// An unpredictable number.
+/// Draws an unpredictable session number, never 0.
 Result<std::uint64_t, Refusal> draw_secret()
 {
     std::uint64_t secret = 0;
     if (!linux_extras::draw_random(std::as_writable_bytes(std::span(&secret, 1))))
     {
-        return Refusal{"udp device: the system gives no random number"};
+        return Refusal{"udp device: the system returned no random number"};
     }
     return secret == 0 ? 1 : secret;
 }
@@ -81,17 +81,18 @@ Refusal nobody_came(const udp::Socket& socket, const udp::Session& session, Dura
         return {"udp device: more than one device describes itself to " +
                 udp::text_of(socket.endpoint()) + ", from " +
                 udp::text_of(session.peer().endpoint) + " and from " +
-                udp::text_of(session.rival()->endpoint) + ", and none gave way" + within +
-                "; a key tells them apart (docs/udp-device.md)"};
+                udp::text_of(session.rival()->endpoint) + ", and none stopped" + within +
+                "; use a key to distinguish them (docs/udp-device.md)"};
     }
     std::string line = "udp device: no device described itself to " +
                        udp::text_of(socket.endpoint()) +
                        (session.info() ? " and sent samples" : "") + within;
-    line += refused == 0
-                ? session.info() ? ""
-                                 : "; no datagram came: is its driver running, and does "
-                                   "it send there?"
-                : " (" + counted(refused, "datagram") + " refused, the last: " + last + ")";
+    line +=
+        refused == 0
+            ? session.info()
+                  ? ""
+                  : "; no datagram arrived; check that its driver runs and sends to this address"
+            : " (" + counted(refused, "datagram") + " refused, the last: " + last + ")";
     return {std::move(line)};
 }
 
@@ -112,11 +113,11 @@ void answer(const udp::Socket& socket, const udp::Session& session, std::uint64_
     datagram.version = peer.version;
     datagram.answers = session.answers();
     static_cast<void>(
-        send_to(socket, datagram, peer.endpoint, authenticator)); // A lost one is repeated.
+        send_to(socket, datagram, peer.endpoint, authenticator)); // A lost answer is repeated.
 }
 
-/// Returns once the session has settled on a device; `sequence` is that of the last datagram sent
-/// to it.
+/// Waits until the session has settled on a device, or returns the refusal. Counts `sequence` up to
+/// the number of the last datagram sent.
 std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& session,
                                     const UdpDeviceOptions& options, std::uint64_t& sequence)
 {
@@ -246,7 +247,8 @@ UdpTraffic UdpDevice::traffic() const noexcept
 
 void UdpDevice::run() noexcept
 {
-    bool is_asked = true; // It answers the description that create() received.
+    // The first answer is to the description that create() received.
+    bool is_asked = true;
     while (!is_stopped_.load())
     {
         if (session_.lapse(clock().now()))
@@ -309,8 +311,8 @@ bool UdpDevice::receive_one(std::span<const std::byte> bytes, const udp::Endpoin
     return true;
 }
 
-/// The number is drawn before the command is read. A later brake has a greater number, so the
-/// device refuses ours as too old; an earlier brake is visible here.
+/// Draws the sequence number before it reads the command. A brake after the draw gets a greater
+/// number, so the device refuses this datagram as stale; an earlier brake is in the command.
 void UdpDevice::send_due(bool is_asked) noexcept
 {
     const udp::Peer& peer = session_.peer();
@@ -347,7 +349,7 @@ bool UdpDevice::send(const udp::ForceDatagram& datagram, const udp::Endpoint& to
     return send_to(socket_, datagram, to, authenticator_);
 }
 
-/// `answers` is 0: only the I/O thread knows the last accepted datagram.
+/// Sends 0 in `answers`, since only the I/O thread knows the last accepted datagram.
 void UdpDevice::brake() noexcept
 {
     RemoteDevice::brake();
@@ -358,7 +360,7 @@ void UdpDevice::brake() noexcept
         datagram.address = {peer.instance, peer.session, sequence_.fetch_add(1) + 1};
         datagram.version = peer.version;
         datagram.state = DeviceState::brake;
-        static_cast<void>(send(datagram, peer.endpoint)); // A lost one is repeated.
+        static_cast<void>(send(datagram, peer.endpoint)); // A lost brake is repeated.
     }
 }
 

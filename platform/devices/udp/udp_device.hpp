@@ -29,13 +29,14 @@ struct UdpDeviceOptions
     static constexpr Duration kDelayMax = milliseconds(100);
     static constexpr Duration kAskEvery = milliseconds(50);
 
-    /// Numeric IPv4 address. Without an authenticator any sender that reaches it can move the tool:
-    /// keep it local to this machine.
+    /// Numeric IPv4 address to listen on. Without an authenticator any sender that reaches it can
+    /// move the tool, so use one that only this machine reaches.
     std::string address{"127.0.0.1"};
     int port{kPortDefault}; ///< Port, as in udp::Socket::open().
-    /// Time to wait for a device's description, up to kWaitMax.
+    /// Longest time that create() waits for a device, up to kWaitMax.
     Duration wait{milliseconds(10'000)};
-    /// Called every kAskEvery during the wait, on the calling thread: false ends it. Empty: never.
+    /// Called every kAskEvery while create() waits, on its thread; false ends the wait. May be
+    /// empty.
     std::function<bool()> goes_on;
     /// Interval at which the I/O thread checks for a force to send, in [kPollMin, kPollMax]; it
     /// adds to the delay of a force.
@@ -44,16 +45,17 @@ struct UdpDeviceOptions
     /// loopback with the default poll: docs/udp-device.md.
     Duration transport_delay{microseconds(400)};
     RemoteTimes times;
-    /// Time for which a silent device keeps its place, up to kWaitMax.
+    /// Time for which no other device may replace a silent one, up to kWaitMax.
     Duration place{milliseconds(3'000)};
-    /// Time for which a device must have sent samples before its limits are used, up to kWaitMax,
-    /// while no other device describes itself. 0: the first description is accepted.
+    /// Time for which a device must be attached without a rival before create() accepts it, up to
+    /// kWaitMax; see udp::Session::is_proven(). 0: create() accepts the first description.
     Duration proof{milliseconds(300)};
-    /// Key shared with the driver; borrowed, outlives the device; null: every sender is accepted.
+    /// Holds the key shared with the driver; borrowed, must outlive the device. Null: every sender
+    /// is accepted.
     const udp::Authenticator* authenticator{nullptr};
     DeviceFrame frame;
     RtThreadOptions thread{io_thread_options()}; ///< Options of the I/O thread.
-    const Clock* clock{nullptr}; ///< Clock, borrowed; it outlives the device. Not null.
+    const Clock* clock{nullptr};                 ///< Borrowed; must outlive the device. Not null.
 };
 
 /// Counts of datagrams since create().
@@ -61,15 +63,16 @@ struct UdpTraffic
 {
     std::uint64_t described{0}; ///< Accepted descriptions, including the first one.
     std::uint64_t samples{0};   ///< Accepted samples.
-    std::uint64_t sessions{0};  ///< Devices attached one after the other.
+    std::uint64_t sessions{0};  ///< Sessions begun, including the first one.
     std::uint64_t lost{0};      ///< Number of times that a device was silent for too long.
     std::uint64_t forces{0};    ///< Forces sent by the I/O thread.
     std::uint64_t unsent{0};    ///< Forces that the system refused to send.
-    /// Datagrams refused, by udp::DatagramFault.
+    /// Refused datagrams, indexed by udp::DatagramFault.
     std::array<std::uint64_t, udp::kDatagramFaults> refused{};
-    const char* wrong_value{nullptr}; ///< Value at fault in the last datagram with wrong content.
-    /// Descriptions of another device since the last accepted datagram: the settled one has gone
-    /// and lost its place.
+    /// Name of the value at fault in the last datagram refused for its content; null: none.
+    const char* wrong_value{nullptr};
+    /// Descriptions that differ from the first one, since the last accepted datagram. Above 0: the
+    /// first device has gone and lost its place.
     std::uint64_t others{0};
 };
 
@@ -80,23 +83,24 @@ class UdpDevice final : public RemoteDevice
 public:
     /// Waits on the calling thread until a device has described and proved itself. Refuses options
     /// out of range, all that udp::Socket::open() and RtThread::start() refuse, a wait that ends
-    /// without a device, and several devices. A null clock is a bug (asserted).
+    /// without a device, and more than one device. A null clock is a bug (asserted).
     [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(const UdpDeviceOptions& options);
-    /// Like the other create(), with an open socket; the options' address and port are ignored.
+    /// Like create(options), with an open socket; the options' address and port are ignored.
     [[nodiscard]] static Result<std::unique_ptr<UdpDevice>, Refusal>
     create(udp::Socket socket, const UdpDeviceOptions& options);
 
     UdpDevice(const UdpDevice&) = delete;
     UdpDevice& operator=(const UdpDevice&) = delete;
-    /// Sends the device the state idle.
+    /// Ends the I/O thread, which sends the state idle as its last datagram.
     ~UdpDevice() override;
 
-    /// Sends zero force and the brake at once, by a non-blocking system call on the calling thread;
-    /// the I/O thread repeats it, since datagrams get lost.
+    /// Sends zero force and the state brake at once, by a non-blocking system call on the calling
+    /// thread. The I/O thread repeats them, since datagrams get lost.
     void brake() noexcept override;
 
-    /// Recent counts. Any thread except the haptic one, since it may wait.
+    /// Counts at the I/O thread's last cycle. Any thread except the haptic one, since the call may
+    /// wait.
     [[nodiscard]] UdpTraffic traffic() const noexcept;
     /// Rights granted to the I/O thread.
     [[nodiscard]] const RtThreadReport& thread_report() const noexcept { return thread_->report(); }
@@ -105,9 +109,10 @@ private:
     /// Interval at which an unchanged force is sent again: datagrams get lost, and the device drops
     /// the force after 20 ms without one.
     static constexpr Duration kRepeat = milliseconds(5);
-    /// Poll interval without a device.
+    /// Poll interval while no device is attached.
     static constexpr Duration kIdlePoll = milliseconds(5);
-    /// Datagrams received in a row at most, so that a flood doesn't delay the forces.
+    /// Most datagrams received in a cycle of the I/O thread, so that a flood doesn't delay the
+    /// forces.
     static constexpr int kDatagramsMax = 64;
 
     UdpDevice(udp::Socket socket, udp::Session session, std::uint64_t sequence,
@@ -136,7 +141,8 @@ private:
     DeviceCommand sent_;
     MonotonicTime sent_at_;
 
-    std::optional<RtThread> thread_; ///< Thread; it ends before all that it uses.
+    /// Last member: the thread ends before all that it uses.
+    std::optional<RtThread> thread_;
 };
 
 } // namespace tactus

@@ -38,8 +38,9 @@ std::string take_better_source(const SystemFiles& files, const std::string& curr
             return fmt::format("echo {} | sudo tee {}", source, kCurrentSource);
         }
     }
-    return machine == "x86_64" ? add_to_kernel_line("clocksource=tsc tsc=reliable")
-                               : "dmesg | grep -i clocksource # Why there is no better one.";
+    return machine == "x86_64"
+               ? add_to_kernel_line("clocksource=tsc tsc=reliable")
+               : "dmesg | grep -i clocksource # Shows why there is no better source.";
 }
 
 } // namespace
@@ -49,8 +50,8 @@ Finding check_clock_source(const MachineView& view)
     Finding finding{"clock-source",
                     Verdict::good,
                     "",
-                    "The loop reads the clock several times a frame. Through the vDSO that takes "
-                    "20 ns; otherwise it is a system call, which frames must not make.",
+                    "The loop reads the clock several times in each frame. A read through the vDSO "
+                    "takes 20 ns; any other read is a system call, which frames must not make.",
                     {}};
     const auto source = view.files.text(kCurrentSource);
     const auto calls = view.measured.clock_calls;
@@ -64,7 +65,7 @@ Finding check_clock_source(const MachineView& view)
         return unreadable(std::move(finding), view.files, kCurrentSource);
     }
     finding.found = fmt::format(
-        "{}, {}", source ? shown(*source) : "source not told",
+        "{}, {}", source ? shown(*source) : "unknown source",
         calls     ? fmt::format("{} system calls in {} reads", *calls, Measured::kClockReads)
         : by_call ? "read by a system call"
                   : "read without a system call");
@@ -82,18 +83,18 @@ Finding check_timer(const MachineView& view)
     Finding finding{"timer",
                     Verdict::good,
                     "",
-                    "Without high-resolution timers a thread wakes with the kernel's tick, 1 to "
-                    "10 ms apart: there is no period of 1 ms.",
+                    "Without high-resolution timers, a thread wakes only at the kernel's tick, "
+                    "every 1 to 10 ms. A period of 1 ms is then impossible.",
                     {}};
     const auto resolution_ns = view.measured.clock_resolution_ns;
     if (!resolution_ns || *resolution_ns <= 0)
     {
         finding.verdict = Verdict::unknown;
-        finding.found = "the resolution of CLOCK_MONOTONIC is not told";
+        finding.found = "the resolution of CLOCK_MONOTONIC is unknown";
         finding.remedy = {"grep -m 1 resolution /proc/timer_list"};
         return finding;
     }
-    finding.found = fmt::format("timers of {} ns", *resolution_ns);
+    finding.found = fmt::format("timer resolution of {} ns", *resolution_ns);
     if (*resolution_ns <= kMostResolution_ns)
     {
         return finding;
@@ -111,16 +112,16 @@ Finding check_float_control(const MachineView& view)
     Finding finding{"float-control",
                     Verdict::good,
                     "new threads keep denormals and round to nearest",
-                    "Some library, one built with fast maths for instance, or a preloaded one "
-                    "changes it for all threads (FTZ, DAZ, rounding): results are no longer the "
-                    "same bits, proven bounds no longer proven.",
+                    "A library, for example one built with -ffast-math, changes the floating-point "
+                    "mode (FTZ, DAZ, rounding) of all threads. Results then have other bits, and "
+                    "bounds are no longer proven.",
                     {}};
     if (view.measured.float_control_is_default)
     {
         return finding;
     }
     finding.verdict = Verdict::critical;
-    finding.found = "new threads flush denormals (FTZ, DAZ), round otherwise or trap";
+    finding.found = "new threads flush denormals (FTZ, DAZ), use another rounding mode or trap";
     if (view.measured.preloaded.empty())
     {
         finding.remedy = {

@@ -55,7 +55,8 @@ std::string_view attribute_of(std::string_view tag, std::string_view name)
     return {};
 }
 
-/// Adds a name unless it is a path, because it becomes a part of one.
+/// Adds the name of an interface. Names that contain a path are dropped, since the name becomes a
+/// part of a path.
 void add_interface(std::string_view name, std::vector<std::string>& interfaces)
 {
     const bool is_name = !name.empty() && name != "auto" && name != "." && name != ".." &&

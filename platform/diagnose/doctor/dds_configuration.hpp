@@ -18,10 +18,10 @@ struct DdsConfiguration
     std::string unreadable_file;         ///< First file that can't be read; empty: none.
 };
 
-/// Reads a value of CYCLONEDDS_URI: XML elements and file addresses, separated by commas. This is
-/// no XML parser. It finds <NetworkInterface name="..."> and the older
-/// <NetworkInterfaceAddress>...</NetworkInterfaceAddress>, and ignores all else. Interfaces that
-/// are given by address are ignored, too.
+/// Reads a value of CYCLONEDDS_URI: XML elements and file addresses, separated by commas. The
+/// function is no XML parser. Only <NetworkInterface name="..."> and the older
+/// <NetworkInterfaceAddress>...</NetworkInterfaceAddress> count; interfaces that are given by
+/// address are ignored.
 [[nodiscard]] DdsConfiguration read_dds_configuration(std::string_view uri,
                                                       const SystemFiles& files);
 

@@ -35,8 +35,8 @@ struct Finding
     std::string found;
     std::string why;                 ///< Effect on the loop.
     std::vector<std::string> remedy; ///< Shell commands, in order; empty if the verdict is good.
-    bool is_asked_for{false};        ///< True if an option asks for it, so that it is shown even if
-                                     ///< good.
+    /// True if an option requests this check: a good finding is then shown in full, too.
+    bool is_asked_for{false};
 };
 
 } // namespace tactus::doctor

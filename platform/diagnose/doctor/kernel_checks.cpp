@@ -47,7 +47,7 @@ std::string get_rt_kernel(const std::string& machine)
                            machine == "x86_64" ? "amd64" : "arm64");
     }
     return "scripts/config --enable PREEMPT_RT && make olddefconfig && make # In the kernel's "
-           "tree.";
+           "source tree.";
 }
 
 /// Device that the interrupt of a folder serves; empty if it serves none.
@@ -81,9 +81,10 @@ std::optional<ProcessorSet> targets_of(const SystemFiles& files, const std::stri
 struct InterruptCount
 {
     std::size_t with_device{0};
-    std::size_t untold{0}; ///< Those among them with unknown processors.
-    std::size_t here{0};   ///< Those among them on the loop's processor.
-    std::string examples;  ///< A few of these.
+    std::size_t untold{0}; ///< Interrupts with unknown processors.
+    std::size_t here{0};   ///< Interrupts on the loop's processor.
+    std::string
+        examples; ///< Text that names up to three of the interrupts on the loop's processor.
 };
 
 InterruptCount count_interrupts(const SystemFiles& files, int cpu)
@@ -138,8 +139,8 @@ Finding check_preemption(const MachineView& view)
     Finding finding{"preemption",
                     Verdict::advice,
                     "",
-                    "While anybody's system call is where the kernel can't be preempted, the loop "
-                    "waits; PREEMPT_RT leaves few such places and puts interrupts into threads.",
+                    "The loop waits while another thread is in a part of the kernel that can't be "
+                    "preempted. PREEMPT_RT has few such parts and runs interrupts in threads.",
                     {}};
     const std::string version =
         view.files.text("/proc/version").value_or(view.measured.kernel_version);
@@ -171,13 +172,13 @@ Finding check_preemption(const MachineView& view)
 Finding check_throttling(const MachineView& view)
 {
     const std::string folder = "/proc/sys/kernel/";
-    Finding finding{"rt-throttling",
-                    Verdict::advice,
-                    "",
-                    "Real-time threads that use up their share stand still for the rest of the "
-                    "period, in the middle of a contact; without the limit one that runs away "
-                    "keeps its processor.",
-                    {"sudo sysctl -w kernel.sched_rt_runtime_us=-1"}};
+    Finding finding{
+        "rt-throttling",
+        Verdict::advice,
+        "",
+        "Real-time threads that use up their share are paused for the rest of the period, even "
+        "during a contact. Without the limit, a thread in an endless loop keeps its processor.",
+        {"sudo sysctl -w kernel.sched_rt_runtime_us=-1"}};
     const auto read = [&](const char* name) -> std::optional<std::int64_t>
     {
         const auto text = view.files.text(folder + name);
@@ -210,9 +211,9 @@ Finding check_compaction(const MachineView& view)
     const std::string file = "/proc/sys/vm/compact_unevictable_allowed";
     Finding finding{"compaction",
                     Verdict::advice,
-                    "the kernel may move locked memory to make room for large pieces",
-                    "Whoever touches a page on its way elsewhere waits until it is there: a page "
-                    "fault in a loop whose memory is locked.",
+                    "the kernel may move locked memory to make room for large blocks",
+                    "A thread that accesses a page during its move waits until the end of the "
+                    "move. This is a page fault, although the memory of the loop is locked.",
                     {"echo vm.compact_unevictable_allowed=0 | sudo tee "
                      "/etc/sysctl.d/61-tactus.conf",
                      "sudo sysctl --system"}};
@@ -225,7 +226,7 @@ Finding check_compaction(const MachineView& view)
     if (*allowed == 0)
     {
         finding.verdict = Verdict::good;
-        finding.found = "locked memory stays where it is";
+        finding.found = "the kernel does not move locked memory";
         finding.remedy.clear();
     }
     return finding;
@@ -237,8 +238,8 @@ Finding check_isolation(const MachineView& view)
     Finding finding{"isolation",
                     Verdict::advice,
                     "",
-                    "On a processor of its own the loop's caches stay warm and the kernel's "
-                    "housekeeping and other threads stay away.",
+                    "On an isolated processor, the caches of the loop stay warm, and other threads "
+                    "and the kernel's housekeeping do not run.",
                     {}};
     const auto list = view.files.text(folder + "isolated");
     const auto isolated = list ? parse_processor_list(*list) : std::nullopt;
@@ -276,7 +277,7 @@ Finding check_isolation(const MachineView& view)
     const ProcessorSet others = *online & ~set_of(*cpu);
     finding.remedy = {
         others.none()
-            ? "lscpu --online --extended # One is too few; the loop needs another."
+            ? "lscpu --online --extended # One processor is too few; the loop needs another one."
             : add_to_kernel_line(fmt::format(
                   "isolcpus=managed_irq,domain,{0} nohz_full={0} rcu_nocbs={0} irqaffinity={1}",
                   *cpu, processor_list(others)))};
@@ -288,8 +289,8 @@ Finding check_interrupts(const MachineView& view)
     Finding finding{"interrupts",
                     Verdict::advice,
                     "",
-                    "An interrupt on the loop's processor stops the loop while it is served; a "
-                    "network card brings thousands of them a second.",
+                    "An interrupt on the loop's processor pauses the loop. A network card causes "
+                    "thousands of interrupts a second.",
                     {}};
     const auto online = online_processors(view.files);
     if (!online)
@@ -318,7 +319,7 @@ Finding check_interrupts(const MachineView& view)
     if (count.untold > 0)
     {
         finding.verdict = count.here > 0 || new_ones_come ? Verdict::advice : Verdict::unknown;
-        finding.found += fmt::format("; of {} the kernel does not tell", count.untold);
+        finding.found += fmt::format("; {} with an unknown target", count.untold);
     }
     else if (count.here == 0 && !new_ones_come)
     {
@@ -326,9 +327,10 @@ Finding check_interrupts(const MachineView& view)
         return finding;
     }
     const ProcessorSet others = *online & ~set_of(*view.cpu);
-    finding.remedy = others.none()
-                         ? std::vector<std::string>{"lscpu --online --extended # One is too few."}
-                         : move_interrupts(view.files, others);
+    finding.remedy =
+        others.none()
+            ? std::vector<std::string>{"lscpu --online --extended # One processor is too few."}
+            : move_interrupts(view.files, others);
     return finding;
 }
 

@@ -40,7 +40,7 @@ Finding unreadable(Finding finding, const SystemFiles& files, const std::string&
     const auto text = files.text(path);
     if (!files.is_there(path))
     {
-        finding.found = fmt::format("{} is not there", path);
+        finding.found = fmt::format("{} does not exist", path);
     }
     else if (!text)
     {
@@ -48,7 +48,7 @@ Finding unreadable(Finding finding, const SystemFiles& files, const std::string&
     }
     else
     {
-        finding.found = fmt::format("{} holds {}, which makes no sense", path, shown(*text));
+        finding.found = fmt::format("{} has the invalid content {}", path, shown(*text));
     }
     finding.remedy = {
         fmt::format("{} {}", files.is_there(path) && !text ? "sudo cat" : "ls -l", path)};

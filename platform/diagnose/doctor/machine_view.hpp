@@ -27,7 +27,8 @@ struct MachineView
 /// Processors of the loop: the chosen one, or all online ones.
 [[nodiscard]] std::optional<ProcessorSet> loop_processors(const MachineView& view);
 
-/// Value or best value of `--cpu`: the chosen processor, or the highest online one.
+/// Processor given by `--cpu`; otherwise the highest online one, the best choice for `--cpu`. None
+/// if unknown.
 [[nodiscard]] std::optional<int> chosen_or_highest(const MachineView& view);
 
 /// Text like "processors 0-3" or "processor 2".

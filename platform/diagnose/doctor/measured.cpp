@@ -71,7 +71,8 @@ bool try_memory_lock()
     return granted;
 }
 
-/// Counts on a separate thread, because the trap is permanent. None if calls can't be trapped.
+/// Counts the system calls of kClockReads clock reads. Uses a separate thread, because the trap is
+/// permanent. None if calls can't be trapped.
 std::optional<std::uint64_t> count_clock_calls()
 {
     std::optional<std::uint64_t> calls;

@@ -10,7 +10,7 @@
 namespace tactus::doctor
 {
 
-/// Value of an unlimited resource.
+/// Limit of an unlimited resource.
 inline constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
 /// Measured behaviour of the system, as opposed to the contents of its files.
@@ -34,7 +34,7 @@ struct Measured
     std::string dds_uri;                 ///< CYCLONEDDS_URI; empty is the same as unset.
 };
 
-/// Measures all of it on short-lived threads, in a few ms at most. The process is left unchanged,
+/// Measures all fields on short-lived threads, in a few ms at most. The process is left unchanged,
 /// except that locked memory becomes unlocked.
 [[nodiscard]] Measured measure();
 

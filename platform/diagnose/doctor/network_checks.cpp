@@ -52,11 +52,11 @@ std::string state_in_words(const Interface& interface)
     const std::string name = shown(interface.name);
     if (!interface.is_there)
     {
-        return name + " is not there";
+        return name + " does not exist";
     }
     if (!interface.is_told)
     {
-        return name + " does not tell its state";
+        return name + " has an unknown state";
     }
     if (!interface.is_up)
     {
@@ -70,10 +70,11 @@ std::string mend(const Interface& interface)
     const std::string name = shell_word(interface.name);
     if (!interface.is_there)
     {
-        return "ip -brief link # Then name one of these to DDS.";
+        return "ip -brief link # Then set one of these in CYCLONEDDS_URI.";
     }
-    return interface.is_up ? fmt::format("ip link show dev {} # No carrier: the cable?", name)
-                           : fmt::format("sudo ip link set dev {} up", name);
+    return interface.is_up
+               ? fmt::format("ip link show dev {} # If NO-CARRIER is shown, check the cable.", name)
+               : fmt::format("sudo ip link set dev {} up", name);
 }
 
 /// Critical if a named interface is missing, down or without a link; unknown if its state is
@@ -123,7 +124,7 @@ Finding judge_any(Finding finding, const SystemFiles& files)
     finding.found = loopback.empty()
                         ? "no interface is up"
                         : fmt::format("no interface is named, and only {} is up", shown(loopback));
-    finding.remedy = {off.empty() ? "ip -brief link # None but the loopback is there."
+    finding.remedy = {off.empty() ? "ip -brief link # There is only the loopback."
                                   : fmt::format("sudo ip link set dev {} up", shell_word(off))};
     return finding;
 }
@@ -135,8 +136,8 @@ Finding check_dds_configuration(const MachineView& view)
     Finding finding{"dds-configuration",
                     Verdict::good,
                     "",
-                    "Without CYCLONEDDS_URI hrtc finds models on this machine alone (interface lo, "
-                    "no multicast); with it, what it says is used as it is.",
+                    "Without CYCLONEDDS_URI, hrtc finds only models of this machine (interface lo, "
+                    "no multicast). With CYCLONEDDS_URI, DDS uses that configuration unchanged.",
                     {}};
     if (view.measured.dds_uri.empty())
     {
@@ -150,20 +151,19 @@ Finding check_dds_configuration(const MachineView& view)
     {
         finding.verdict = Verdict::critical;
         finding.found += fmt::format("; {} can't be read", shown(configuration.unreadable_file));
-        finding.remedy = {"unset CYCLONEDDS_URI # Or have it name a file that is there."};
+        finding.remedy = {"unset CYCLONEDDS_URI # Or set it to a readable file."};
     }
     return finding;
 }
 
 Finding check_dds_interface(const MachineView& view)
 {
-    Finding finding{
-        "dds-interface",
-        Verdict::unknown,
-        "",
-        "Over an interface that is not there, down or without a link hrtc gets no model, "
-        "except from files.",
-        {}};
+    Finding finding{"dds-interface",
+                    Verdict::unknown,
+                    "",
+                    "If the interface does not exist, is down or has no link, hrtc gets models "
+                    "only from files.",
+                    {}};
     if (view.files.names("/sys/class/net").empty())
     {
         return unreadable(std::move(finding), view.files, "/sys/class/net");
@@ -181,13 +181,13 @@ Finding check_dds_interface(const MachineView& view)
 
 Finding check_dds_buffers(const MachineView& view)
 {
-    Finding finding{"dds-buffers",
-                    Verdict::good,
-                    "",
-                    "A burst of chunks that does not fit the socket's buffer is lost and sent "
-                    "again, and the answers stay bounded meanwhile. DDS asks for 1 MiB to receive "
-                    "and 64 KiB to send.",
-                    {}};
+    Finding finding{
+        "dds-buffers",
+        Verdict::good,
+        "",
+        "A burst of chunks larger than the buffer of the socket is lost and sent again. Until "
+        "then, answers stay bounded. DDS requests 1 MiB for receiving and 64 KiB for sending.",
+        {}};
     for (const auto& [name, least] :
          {std::pair("rmem_max", kReceiveBytes), std::pair("wmem_max", kSendBytes)})
     {

@@ -85,8 +85,8 @@ Finding check_governor(const MachineView& view)
         "governor",
         Verdict::advice,
         "",
-        "The loop works a small part of each period, which other governors take for "
-        "idleness: frames then take longer, and as long as the clock happens to be.",
+        "The loop works for a small part of each period. Other governors take this for idle time "
+        "and lower the clock rate, so that frames take longer.",
         {fmt::format("echo performance | sudo tee {}/cpufreq/scaling_governor", folders_of(view))}};
     const auto processors = loop_processors(view);
     if (!processors || !online_processors(view.files))
@@ -116,7 +116,7 @@ Finding check_governor(const MachineView& view)
     if (by_governor.empty())
     {
         finding.found =
-            fmt::format("{} without a governor: the clock is fixed, or the hypervisor's",
+            fmt::format("{} without a governor: the clock rate is fixed or set by the hypervisor",
                         processors_in_words(*processors));
     }
     if (by_governor.empty() || (by_governor.size() == 1 && by_governor.contains("performance")))
@@ -133,8 +133,8 @@ Finding check_idle_states(const MachineView& view)
     Finding finding{"idle-states",
                     Verdict::advice,
                     "",
-                    "The processor sleeps between frames; out of a deep C-state each wake-up is "
-                    "late by that state's exit latency, and caches may be cold.",
+                    "The processor sleeps between frames. Each wake-up from a deep C-state is late "
+                    "by the exit latency of that state, and caches may be cold.",
                     {}};
     const auto processors = loop_processors(view);
     if (!processors || !online_processors(view.files))
@@ -159,7 +159,7 @@ Finding check_idle_states(const MachineView& view)
     if (asked_us && *asked_us < deepest_us)
     {
         deepest_us = *asked_us;
-        finding.found += fmt::format(", held to {} us by /dev/cpu_dma_latency", *asked_us);
+        finding.found += fmt::format(", limited to {} us by /dev/cpu_dma_latency", *asked_us);
     }
     if (deepest_us <= kMostWake_us)
     {
@@ -177,8 +177,8 @@ Finding check_siblings(const MachineView& view)
     Finding finding{"smt",
                     Verdict::advice,
                     "",
-                    "Two processors of one core share its units and caches: what runs on the other "
-                    "one makes frames take longer, and nothing that the loop does can prevent it.",
+                    "Two processors of one core share its execution units and caches. Work on the "
+                    "other processor makes frames take longer, and the loop can't prevent this.",
                     {}};
     if (!view.cpu)
     {

@@ -16,7 +16,7 @@ namespace
 constexpr unsigned kCapIpcLock = 14; // Numbers of linux/capability.h.
 constexpr unsigned kCapSysNice = 23;
 
-/// State in words: "held", "not held" or "not known to be held".
+/// State of a capability in words: "held", "not held" or "not known to be held".
 std::string capability_in_words(const SystemFiles& files, unsigned capability)
 {
     std::istringstream status(files.text("/proc/self/status").value_or(""));
@@ -46,7 +46,7 @@ std::vector<std::string> raise_limit(const std::string& user, const std::string&
 {
     return {fmt::format("echo {} | sudo tee -a /etc/security/limits.d/tactus.conf",
                         shell_word(fmt::format("{} - {}", user, limit))),
-            "exit # And log in again: limits are given at login."};
+            "exit # Then log in again: limits are set at login."};
 }
 
 /// Control group of the process for the cpu controller: its folder below /sys/fs/cgroup.
@@ -71,7 +71,8 @@ std::optional<std::string> cpu_group(const SystemFiles& files)
     return std::nullopt;
 }
 
-/// Commands that give the group a share, if the right exists without one.
+/// Commands that give the control group real-time processor time, without which the right has no
+/// effect.
 std::vector<std::string> give_share(const SystemFiles& files)
 {
     const std::optional<std::string> group = cpu_group(files);
@@ -81,7 +82,7 @@ std::vector<std::string> give_share(const SystemFiles& files)
             fmt::format("echo 950000 | sudo tee {}",
                         shell_word(fmt::format("/sys/fs/cgroup/{}/cpu.rt_runtime_us", *group)))};
     }
-    return {"echo $$ | sudo tee /sys/fs/cgroup/cgroup.procs # The root group, from this shell on."};
+    return {"echo $$ | sudo tee /sys/fs/cgroup/cgroup.procs # Moves this shell to the root group."};
 }
 
 } // namespace
@@ -93,8 +94,8 @@ Finding check_priority(const MachineView& view)
     Finding finding{"priority",
                     Verdict::good,
                     "",
-                    "Without SCHED_FIFO the loop waits its turn among all other threads, for "
-                    "milliseconds; hrtc refuses to run then.",
+                    "Without SCHED_FIFO, the loop waits for other threads, for milliseconds. hrtc "
+                    "then runs only with --allow-no-rt.",
                     {}};
     const std::string capability = capability_in_words(view.files, kCapSysNice);
     finding.found = fmt::format(
@@ -120,8 +121,8 @@ Finding check_memory_lock(const MachineView& view)
     Finding finding{"memlock",
                     Verdict::good,
                     "",
-                    "A page that is not locked may have to be fetched in the middle of a frame; "
-                    "memory mapped later must fit as well, so no finite limit does.",
+                    "A page that is not locked may have to be loaded during a frame. Memory that "
+                    "is mapped later counts too, so no finite limit is enough.",
                     {}};
     finding.found = fmt::format("locking all memory {}; memlock limit {}, CAP_IPC_LOCK {}",
                                 measured.memory_lock_granted ? "granted" : "refused",
@@ -143,13 +144,13 @@ Finding check_huge_pages(const MachineView& view)
     Finding finding{"huge-pages",
                     Verdict::good,
                     "",
-                    "With 'always' the kernel also merges small pages that are in use, and an "
-                    "access waits meanwhile; hrtc asks for huge pages where it wants them.",
+                    "With 'always', the kernel also merges small pages in use, and an access waits "
+                    "for the merge. hrtc requests huge pages where it needs them.",
                     {}};
     const auto choices = view.files.text(path);
     if (!choices && view.files.is_folder("/sys/kernel/mm") && !view.files.is_there(path))
     {
-        finding.found = "the kernel makes none by itself";
+        finding.found = "the kernel makes no huge pages by itself";
         return finding;
     }
     for (const char* choice : {"always", "madvise", "never"})

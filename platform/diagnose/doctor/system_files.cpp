@@ -24,7 +24,7 @@ std::optional<std::string> SystemFiles::bytes(const std::string& path) const
     std::ifstream file(below_root(path), std::ios::binary);
     std::string content(kMostBytes, '\0');
     file.read(content.data(), static_cast<std::streamsize>(content.size()));
-    // After a shorter file the stream is neither good nor bad.
+    // A file shorter than the buffer sets failbit, not badbit.
     if (!file.is_open() || file.bad())
     {
         return std::nullopt;

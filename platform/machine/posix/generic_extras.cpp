@@ -7,8 +7,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-/// This file suits any POSIX system with /dev/urandom: all other extras are refused or left out, in
-/// the way that callers know from Linux.
+/// Extras for any POSIX system with /dev/urandom. Extras that need Linux do nothing, or fail like
+/// those of Linux when they are refused.
 namespace tactus::linux_extras
 {
 
@@ -24,8 +24,8 @@ void let_calling_thread_use_all() noexcept {}
 std::string explain_pin_refusal(int cpu)
 {
     return "processor " + std::to_string(cpu) +
-           " can't be asked for: this build can't pin threads on this system; leave the choice to "
-           "the system";
+           " can't be chosen: this build can't pin threads on this system; leave the choice to the "
+           "system";
 }
 
 std::optional<int> another_cpu(int /*cpu*/) noexcept
@@ -36,7 +36,7 @@ std::optional<int> another_cpu(int /*cpu*/) noexcept
 std::string explain_fifo_refusal(int priority, int error)
 {
     return "SCHED_FIFO " + std::to_string(priority) + " refused (" + posix::name_of_error(error) +
-           "): " + posix::user_name() + " lacks this system's right to real-time priorities";
+           "): " + posix::user_name() + " lacks the right to real-time priorities";
 }
 
 int try_to_exceed_lock_limit() noexcept
@@ -47,7 +47,7 @@ int try_to_exceed_lock_limit() noexcept
 std::string explain_lock_refusal(int error)
 {
     return "mlockall refused (" + posix::name_of_error(error) + "): " + posix::user_name() +
-           " lacks this system's right to lock memory, or there is not enough of it";
+           " lacks the right to lock memory, or there is not enough memory";
 }
 
 void read_fault_and_switch_counts(ThreadUsage& /*usage*/) noexcept {}

@@ -25,7 +25,7 @@ std::string describe_rtprio_limit(const rlimit& limit)
     return limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur);
 }
 
-/// Limit in bytes; unlimited if the system has no answer.
+/// Limit of locked memory in bytes; RLIM_INFINITY if the system has no answer.
 rlim_t lock_limit_bytes() noexcept
 {
     rlimit limit{};
@@ -146,7 +146,7 @@ int try_to_exceed_lock_limit() noexcept
     {
         return 0;
     }
-    // The system checks a new mapping against the limit before anything else.
+    // While future memory is locked, the system checks each new mapping against the limit first.
     const auto bytes = static_cast<std::size_t>(limit) + 4096;
     void* mapped = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (mapped == MAP_FAILED)
@@ -162,7 +162,7 @@ std::string explain_lock_refusal(int error)
     const std::string amount =
         limit == RLIM_INFINITY ? "unlimited" : std::to_string(limit) + " bytes";
     return "mlockall refused (" + posix::name_of_error(error) + "): RLIMIT_MEMLOCK is " + amount +
-           " and memory mapped later must fit as well; add '" + posix::user_name() +
+           ", but memory that is mapped later counts too; add '" + posix::user_name() +
            " - memlock unlimited' to /etc/security/limits.d/tactus.conf and log in again, or give "
            "CAP_IPC_LOCK (container: --cap-add=IPC_LOCK --ulimit memlock=-1)";
 }

@@ -19,8 +19,8 @@ namespace tactus::linux_extras
 /// run on `cpu`, ENOTSUP if threads can't be pinned.
 [[nodiscard]] int pin_calling_thread(int cpu) noexcept;
 
-/// Keeps the calling thread, and all that it starts, off `cpu` if there is another processor for
-/// them; otherwise, or if that is unknown, nothing changes.
+/// Keeps the calling thread, and threads that it starts later, off `cpu`. No effect if the process
+/// has no other processor, or if its processors are unknown.
 void keep_calling_thread_off(int cpu) noexcept;
 
 /// Lets the calling thread use every processor of its process.
@@ -36,9 +36,9 @@ void let_calling_thread_use_all() noexcept;
 /// A line that explains why SCHED_FIFO was refused and how to grant it.
 [[nodiscard]] std::string explain_fifo_refusal(int priority, int error);
 
-/// Requires all present and future memory to be locked: maps more than the process may lock,
-/// without access and so without pages, and unmaps it. Returns 0 if there is no limit, or the
-/// errno.
+/// Checks after mlockall() that no limit prevents the locking of future memory. Maps more than the
+/// process may lock, without access and so without pages, and unmaps it. Returns 0 if the system
+/// allows this, otherwise the errno.
 [[nodiscard]] int try_to_exceed_lock_limit() noexcept;
 
 /// A line that explains why memory was not locked and how to grant it.
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] bool are_granted() const noexcept { return descriptor_ >= 0; }
 
 private:
-    int descriptor_{-1}; ///< The request holds while it is open.
+    int descriptor_{-1}; ///< Open file that holds the request; -1: not granted.
 };
 
 } // namespace tactus::linux_extras

@@ -26,7 +26,7 @@ std::optional<std::string> lock_all_memory()
 
 void unlock_all_memory() noexcept
 {
-    // It fails only without the right to lock, and then nothing is locked.
+    // munlockall() fails only without the right to lock, and then nothing is locked.
     static_cast<void>(munlockall());
 }
 

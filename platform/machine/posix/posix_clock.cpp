@@ -22,8 +22,8 @@ std::int64_t read_clock_ns(clockid_t id) noexcept
 
 } // namespace
 
-// The kernel serves this through the vDSO as a read of memory; otherwise the trap of
-// platform/machine/system_call_trap.hpp counts it.
+// The kernel serves now() through the vDSO as a read of memory. If it makes a system call instead,
+// the trap of platform/machine/system_call_trap.hpp counts the call.
 TACTUS_TRUSTED_BEGIN
 MonotonicTime PosixClock::now() const noexcept
 {

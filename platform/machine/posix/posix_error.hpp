@@ -7,7 +7,7 @@
 namespace tactus::posix
 {
 
-/// Symbol of an errno value ("EPERM"), or "errno 123" for those that set-up does not meet.
+/// Symbol of an errno value ("EPERM"), or "errno 123" for values outside the implementation's list.
 [[nodiscard]] std::string name_of_error(int error);
 
 /// Login name of the effective user, or "uid 1000" if it has none.

@@ -23,7 +23,7 @@ void PosixPeriodicTimer::sleep_until(MonotonicTime wake) noexcept
     {
         error = clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
     }
-    TACTUS_ASSERT(error == 0); // Only a bad clock or time is left, and both are ours.
+    TACTUS_ASSERT(error == 0); // All other errors mean a bad clock or time.
 }
 
 MonotonicTime PosixPeriodicTimer::spin_until(MonotonicTime deadline) noexcept

@@ -77,7 +77,7 @@ private:
     sem_t semaphore_{};
 };
 
-/// Blocks every signal in new threads during its life.
+/// While an object lives, new threads start with every signal blocked.
 class SignalsBlocked
 {
 public:
@@ -156,10 +156,10 @@ struct RtThread::Running
     bool undecided{false};
     bool body_may_run{false};
     Gate set_up;
-    Gate separated;
+    Gate decision;
 };
 
-/// A thread that is still waiting was refused, and so is the memory lock made for it.
+/// Ends a thread that start() refused while it waited, and undoes the memory lock made for it.
 RtThread::Running::~Running()
 {
     const bool refused = undecided;
@@ -182,7 +182,7 @@ void* RtThread::Running::enter(void* context) noexcept
     self.pin_error = self.options.cpu ? linux_extras::pin_calling_thread(*self.options.cpu) : 0;
     self.report.pinned = self.options.cpu && self.pin_error == 0;
     self.set_up.open();
-    self.separated.wait();
+    self.decision.wait();
     if (self.body_may_run)
     {
         self.body();
@@ -237,7 +237,7 @@ void RtThread::Running::decide(bool run) noexcept
 {
     body_may_run = run;
     undecided = false;
-    separated.open();
+    decision.open();
 }
 
 void RtThread::Running::join() noexcept

@@ -42,8 +42,8 @@ namespace tactus::system_call_trap
 namespace
 {
 
-// They are constant-initialised and in the program's own static storage, so the handler's first
-// access neither allocates nor calls. They are global, since a handler has no user argument.
+// The variables are constant-initialised and in the program's own static storage, so the handler's
+// first access neither allocates nor calls. They are global, since a handler has no user argument.
 // NOLINTBEGIN(cppcoreguidelines-avoid-non-const-global-variables)
 constinit thread_local TrappedCalls thread_calls{};
 constinit thread_local bool thread_runs_a_frame = false;
@@ -230,7 +230,7 @@ int install_filter(std::uint64_t behind_call) noexcept
         BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
     }};
     const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
-    // Omitting TSYNC limits it to this thread; omitting SPEC_ALLOW would slow the thread.
+    // Without TSYNC the filter is for this thread only. SPEC_ALLOW avoids a slower thread.
     const long failed =
         // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
         syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_SPEC_ALLOW, &program);
@@ -247,7 +247,7 @@ Result<Done, Refusal> set_on_this_thread()
     {
         return std::move(*error);
     }
-    // An unprivileged thread needs it to install a filter; it belongs to this thread, too.
+    // An unprivileged thread needs no_new_privs to install a filter; only this thread gets it.
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): the C library has no other.
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
     {
@@ -256,7 +256,7 @@ Result<Done, Refusal> set_on_this_thread()
     const auto behind_call = reinterpret_cast<std::uint64_t>(&tactus_behind_call);
     if (const int error = install_filter(behind_call); error != 0)
     {
-        return refusal("the kernel takes no seccomp filter", error);
+        return refusal("the kernel accepts no seccomp filter", error);
     }
     return Done{};
 }
@@ -270,8 +270,8 @@ namespace tactus::system_call_trap
 
 Result<Done, Refusal> set_on_this_thread()
 {
-    return Refusal{"system calls can't be trapped: a build can do it only for Linux on "
-                   "x86-64 and aarch64, and without the thread sanitizer"};
+    return Refusal{"system calls can't be trapped: this needs Linux on x86-64 or aarch64, and a "
+                   "build without the thread sanitizer"};
 }
 
 } // namespace tactus::system_call_trap

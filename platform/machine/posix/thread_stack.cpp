@@ -32,7 +32,7 @@ ThreadStack::~ThreadStack()
 {
     if (!mapped_.empty())
     {
-        // It is the whole mapping, so it cannot fail.
+        // munmap() of a whole mapping can't fail.
         static_cast<void>(munmap(mapped_.data(), mapped_.size()));
     }
 }

@@ -8,8 +8,8 @@
 namespace tactus::posix
 {
 
-/// Memory for one thread's stack, every page touched, with a page without access below it so that
-/// an overflow stops the process instead of writing elsewhere.
+/// Memory for one thread's stack, every page touched. A page without access below it lets an
+/// overflow stop the process instead of writing elsewhere.
 class ThreadStack
 {
 public:

@@ -251,26 +251,26 @@ static void ask_for_what_is_refused(probe* p, const char* file, tactus_model* mo
     tactus_model* other = NULL;
     tactus_frame* second = NULL;
     refused(tactus_model_open(TACTUS_ABI + 1, file, &other, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 4; this library has 3");
+            "the program was compiled for ABI version 4; this library has 3");
     tactus_tool tool = p->tool;
     tactus_setup bad_setup = setup;
     bad_setup.tools = &tool;
     bad_setup.abi = TACTUS_ABI + 1;
     refused(tactus_frame_make(&bad_setup, memory, BYTES, &second, &error), TACTUS_BAD_VERSION,
-            "made for ABI version 4");
+            "compiled for ABI version 4");
     bad_setup.abi = TACTUS_ABI;
     tool.size -= 8;
     refused(tactus_frame_make(&bad_setup, memory, BYTES, &second, &error), TACTUS_BAD_VERSION,
-            "tools[0].: its size is");
+            "tools[0].: size is");
     tool.size += 8;
 
     /* Memory and model of another frame; memory that is too small or not aligned. */
     refused(tactus_frame_make(&bad_setup, memory, BYTES, &second, &error), TACTUS_BUSY,
-            "memory: a frame that has not ended uses it");
-    refused(tactus_model_close(model, &error), TACTUS_BUSY, "serves a frame");
+            "memory: another frame uses this memory");
+    refused(tactus_model_close(model, &error), TACTUS_BUSY, "is in use by a frame");
     void* more = aligned_alloc(TACTUS_ALIGNMENT, BYTES);
     refused(tactus_frame_make(&bad_setup, more, BYTES, &second, &error), TACTUS_BUSY,
-            "serves another frame");
+            "is in another frame");
     refused(tactus_frame_make(&bad_setup, more, 4096, &second, &error), TACTUS_REFUSED,
             "memory: 4096 bytes");
     bad(tactus_frame_make(&bad_setup, (char*)more + 1, BYTES - 1, &second, &error),
@@ -302,7 +302,7 @@ static void ask_for_what_is_refused(probe* p, const char* file, tactus_model* mo
     bad(tactus_frame_feel(p->frame, 1, &rough, &error), "object: 1; 0 to 0 is allowed");
     rough.size -= 8;
     refused(tactus_frame_feel(p->frame, 0, &rough, &error), TACTUS_BAD_VERSION,
-            "material: its size is");
+            "material: size is");
     rough.size += 8;
     done(tactus_frame_feel(p->frame, 0, &rough, &error), "feel");
 }

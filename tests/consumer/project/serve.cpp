@@ -14,7 +14,7 @@
 #include <tactus/host_tools/mesh/prepare.hpp>
 #include <tactus/host_tools/simplify/simplify.hpp>
 #include <tactus/rt_core/math/vec3.hpp>
-#include <tactus/transport/dds/dds_host.hpp>
+#include <tactus/transport/dds/dds_server.hpp>
 #include <tactus/transport/dds/telemetry.hpp>
 #include <tactus/version.hpp>
 #include <utility>
@@ -66,7 +66,7 @@ int fail(const tactus::Refusal& refusal)
 }
 
 /// Sum of the controllers' forces on an object, in newtons; `pushing` is the number of controllers.
-tactus::Vec3 push_on(std::uint32_t object, const tactus::dds::DdsHost& host,
+tactus::Vec3 push_on(std::uint32_t object, const tactus::dds::DdsServer& server,
                      const tactus::dds::TelemetryReader& watch, int& pushing)
 {
     tactus::Vec3 push_n(0.0, 0.0, 0.0);
@@ -77,7 +77,7 @@ tactus::Vec3 push_on(std::uint32_t object, const tactus::dds::DdsHost& host,
         for (std::uint32_t i = 0; i < controller.telemetry.pair_count; ++i)
         {
             const tactus::PairTelemetry& pair = controller.telemetry.pairs[i];
-            if (pair.host_epoch == host.epoch() && pair.object == object)
+            if (pair.server_epoch == server.epoch() && pair.object == object)
             {
                 push_n += tactus::Vec3(pair.force_n[0], pair.force_n[1], pair.force_n[2]);
             }
@@ -97,19 +97,19 @@ int publish(const std::filesystem::path& file, std::uint32_t domain)
     const tactus::ContentHash model = store.value().hash();
     std::vector<tactus::dds::PublishedModel> models;
     models.push_back({file.stem().string(), std::move(store).value()});
-    const auto made = tactus::dds::DdsHost::create(domain, std::move(models), {});
+    const auto made = tactus::dds::DdsServer::create(domain, std::move(models), {});
     if (!made)
     {
         return fail(made.error());
     }
-    tactus::dds::DdsHost& host = *made.value();
-    const auto watch = tactus::dds::TelemetryReader::create(host.domain());
+    tactus::dds::DdsServer& server = *made.value();
+    const auto watch = tactus::dds::TelemetryReader::create(server.domain());
     if (!watch)
     {
         return fail(watch.error());
     }
     tactus::Pose pose;
-    const auto cup = host.objects().show({"cup", model, {}, pose});
+    const auto cup = server.objects().show({"cup", model, {}, pose});
     if (!cup)
     {
         return fail(cup.error());
@@ -122,11 +122,11 @@ int publish(const std::filesystem::path& file, std::uint32_t domain)
         next += std::chrono::milliseconds(10);
         while (std::chrono::steady_clock::now() < next)
         {
-            host.wait(std::chrono::milliseconds(1));
-            host.step();
+            server.wait(std::chrono::milliseconds(1));
+            server.step();
         }
         watch.value()->poll();
-        const tactus::Vec3 push_n = push_on(cup.value(), host, *watch.value(), pushing);
+        const tactus::Vec3 push_n = push_on(cup.value(), server, *watch.value(), pushing);
         const auto& [x_m, y_m, z_m] = pose.translation_m;
         const tactus::Vec3 pull_n = -kSpring_n_per_m * tactus::Vec3(x_m, y_m, z_m);
         velocity_m_per_s += kStep_s / kMass_kg * (push_n + pull_n);
@@ -134,7 +134,7 @@ int publish(const std::filesystem::path& file, std::uint32_t domain)
         pose.translation_m[0] += kStep_s * velocity_m_per_s.x();
         pose.translation_m[1] += kStep_s * velocity_m_per_s.y();
         pose.translation_m[2] += kStep_s * velocity_m_per_s.z();
-        if (!host.objects().move(cup.value(), pose))
+        if (!server.objects().move(cup.value(), pose))
         {
             return fail({"the cup is beyond the world"});
         }

@@ -30,7 +30,7 @@ if [[ "$more" == --view ]]; then
     texts+=('View: http://127.0.0.1:')
 elif [[ "$more" == --scene ]]; then
     texts+=('scene.gltf: 200 objects of 20 models' 'touches     200 objects of 20 models'
-        'scene       200 objects, 200 at most')
+        'scene       200 objects, at most 200')
     [[ $(grep -c '^tool  ' "$output") == 2 ]] || fail 'not two hands'
 fi
 for text in "${texts[@]}"; do

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # bad_input.sh SPM_BUILD SPM_INSPECT: every kind of bad input gives the right exit code and exactly
 # one line that begins with the program's name and states the fault; no file is left behind.
-# HostOptions covers wrong options, and ReadMesh faults within a mesh.
+# ServerOptions covers wrong options, and ReadMesh faults within a mesh.
 set -euo pipefail
 readonly build=$1 inspect=$2
 scratch=$(mktemp -d)
@@ -39,7 +39,7 @@ cp in/mesh.obj in/mesh.spm
 refuse_mesh 'in/missing.obj: no such file' missing.obj
 refuse_mesh 'in/beyond.obj: line 4: ' beyond.obj
 refuse_mesh 'in/point.obj: no face is left' point.obj
-refuse_mesh "in/mesh.spm: begins as obj does, which its name doesn't tell: give --format obj" \
+refuse_mesh "in/mesh.spm: begins like a obj file, unlike its name: give --format obj" \
     mesh.spm
 
 expect 2 nowhere/a.spm "$build" in/mesh.obj -o nowhere/a.spm
@@ -70,7 +70,7 @@ awk 'BEGIN {
     }
 }' >in/rings.obj
 "$build" in/rings.obj -o rings.spm >rings.log 2>&1 || failures=$((failures + 1))
-grep -q 'note: the base mesh has [0-9]* faces, 500 were wanted' rings.log ||
+grep -q 'note: the base mesh has [0-9]* faces instead of 500' rings.log ||
     { cat rings.log; failures=$((failures + 1)); }
 # Separate triangles vanish into each other.
 for ((i = 0; i < 600; ++i)); do
@@ -86,11 +86,11 @@ expect 2 'in: ' "$inspect" in
 bytes=$(stat -c %s out/sphere.spm)
 readonly bytes
 head -c $((bytes - 1)) out/sphere.spm >in/cut.spm
-expect 2 'it is cut short' "$inspect" in/cut.spm
+expect 2 'the file is cut short' "$inspect" in/cut.spm
 cp out/sphere.spm in/bent.spm
 printf '\xff' | dd of=in/bent.spm bs=1 seek=$((bytes - 100)) conv=notrunc status=none
 expect 2 'in/bent.spm: chunk' "$inspect" in/bent.spm
-expect 2 '--region: meets nothing of the model, which lies in x -' \
+expect 2 '--region: the region meets no face of the model, whose bounds are x -' \
     "$inspect" out/sphere.spm --extract --region sphere:9,9,9,0.1 -o out/a.ply
 expect 2 nowhere/a.ply "$inspect" out/sphere.spm --json --extract --faces 100 -o nowhere/a.ply
 

@@ -66,7 +66,7 @@ expect_placed -0.15 0.15 -0.2 0.2 -0.003 0.003 --fit-diag 0.500036 --center
 expect_placed -0.15 0.15 -0.2 0.2 -0.003 0.003 --unit mm --center
 grep -qx 'note: moved by -1.15, -7.2, -0.005 m to the origin' notes.txt || fail "$(cat notes.txt)"
 "$build" large.obj -o far.spm --fit-diag 0.2 >/dev/null 2>notes.txt
-grep -q '^note: the model stands [0-9.]* m from its origin, .* --center puts it there' notes.txt \
+grep -q '^note: the model lies [0-9.]* m from its origin, .* --center moves the model' notes.txt \
     || fail "$(cat notes.txt)"
 # A need beyond the memory limit is refused before the work, with the least sufficient limit.
 "$build" --shape sphere --faces 100000 -o refused.spm --memory-mib 30 2>said.txt && fail '30 MiB'
@@ -165,7 +165,7 @@ cmp named.spm piped.spm || fail 'standard input gives another model'
 "$build" <(cat some.ply) --format ply -o piped.spm >/dev/null 2>&1 || fail 'a pipe'
 cmp named.spm piped.spm || fail 'a pipe gives another model'
 "$build" <(cat some.ply) -o piped.spm 2>said.txt && fail 'a pipe without --format'
-grep -q 'with --format a pipe is read' said.txt || fail "a pipe without --format: $(cat said.txt)"
+grep -q 'a pipe needs --format' said.txt || fail "a pipe without --format: $(cat said.txt)"
 printf '0 0 0\n' >point.txt
 "$inspect" named.spm --distances point.txt >said.txt || fail '--distances'
 "$inspect" named.spm --distances - <point.txt | cmp - said.txt || fail '--distances -'
@@ -177,7 +177,7 @@ cmp torus.spm one.spm || fail 'the file depends on the threads'
 
 # An impossible face count of a shape is reported.
 "$build" --shape sphere --faces 3000 -o sphere.spm --json >/dev/null 2>notes.txt
-grep -q '3000 faces were asked for' notes.txt || fail 'no word about the rounded face count'
+grep -q '3000 faces were requested' notes.txt || fail 'no word about the rounded face count'
 
 # An interrupted run leaves nothing.
 mkdir half

@@ -57,7 +57,7 @@ BEGIN {
         if (!solid(x - 1, y)) side(at(x, y + 1, 0), at(x, y, 0), at(x, y, 1), at(x, y + 1, 1))
     }
 }' >sheet.obj
-check sheet "$(grep -c '^f' sheet.obj)" true 2000 'handles cut open, without a gap, at'
+check sheet "$(grep -c '^f' sheet.obj)" true 2000 'handles cut open without a gap, with'
 
 # 200 rings in rows; each keeps at least 14 faces while it is a ring.
 awk 'BEGIN {

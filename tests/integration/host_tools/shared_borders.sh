@@ -54,7 +54,7 @@ for placing in '' --center; do
     comm -12 "$made-left.txt" "$made-right.txt" >border.txt
     (($(wc -l <border.txt) == 4)) || fail "borders of $made: $(cat "$made"-{left,right}.txt)"
 done
-grep -q 'right: 18 bits a coordinate instead of 16, .*: models that meet it' made.said \
+grep -q 'right: 18 bits a coordinate instead of 16, .*: adjacent models have' made.said \
     || fail "$(cat made.said)"
 grep -q '^note: moved by -0.667570114, ' made--center.said || fail "$(cat made--center.said)"
 "$build" tiles.gltf -o turned --up y --scale 0.3 --center >/dev/null 2>&1 || fail 'not built'
@@ -116,5 +116,5 @@ comm -12 edge-left.txt edge-right.txt >border.txt
 # A request for too few bits is reported.
 printf 'OFF 3 1 0\n0 0 0\n0.1 0 0\n0.1 1e-5 0\n3 0 1 2\n' >needle.off
 "$build" needle.off -o needle.spm --position-bits 16 >/dev/null 2>needle.said
-grep -q '^note: 16 bits a coordinate, as asked for, .* without --position-bits they' needle.said \
+grep -q '^note: 16 bits a coordinate give steps .* without --position-bits the ' needle.said \
     || fail "$(cat needle.said)"

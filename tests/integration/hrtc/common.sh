@@ -10,7 +10,7 @@ readonly check_report=$2 sanitizer=${3#none}
 readonly domain=${TACTUS_TEST_DOMAIN:-$(($$ % 231))}
 unset CYCLONEDDS_URI
 # Prefixes that start the programs of either side, set by two_networks.sh.
-on_host=()
+on_server=()
 on_controller=()
 
 scratch=$(mktemp -d)
@@ -96,9 +96,9 @@ wait_until() {
 
 # lines TEXT FILE: prints the number of lines that contain it.
 lines() { grep -csF -- "$1" "$2" || true; }
-# lines_of_host MODEL FILE: prints the number of lines about the model's server; on a slow machine
+# lines_of_server MODEL FILE: prints the number of lines about the model's server; on a slow machine
 # or a bad network others name missing pieces.
-lines_of_host() { grep -sF -- "model '$1'" "$2" | grep -vcF ': chunk ' || true; }
+lines_of_server() { grep -sF -- "model '$1'" "$2" | grep -vcF ': chunk ' || true; }
 has_lines() { (($(lines "$1" "$2") >= $3)); }
 
 # wait_for_line FILE TEXT [COUNT]: waits for at least this number of lines with the text, by default
@@ -143,7 +143,7 @@ wait_for_more() { wait_for_sleeps $(($(sleeps_of "$1") + ${2:-3000})) "$1"; }
 # publish.log.
 start_publisher() {
     : >publish.log
-    "${on_host[@]}" "$publish" --domain "$domain" "$@" >publish.log 2>&1 &
+    "${on_server[@]}" "$publish" --domain "$domain" "$@" >publish.log 2>&1 &
     publisher=$!
     started+=("$publisher")
     wait_for_line publish.log 'ready on DDS domain'
@@ -198,7 +198,7 @@ run_hrtc() {
 # was_held_up FILE: true if the machine stalled the loop.
 was_held_up() { ! "$check_report" "$1" safety.begun.stall == 0 >/dev/null; }
 was_disturbed() {
-    ! "$check_report" "$1" wire.host_lost == 0 >/dev/null || {
+    ! "$check_report" "$1" wire.server_lost == 0 >/dev/null || {
         was_held_up "$1" \
             && ! "$check_report" "$1" force.contact_share '>=' "${contact:-0.5}" >/dev/null
     }

@@ -23,16 +23,16 @@ refuse_file() { refuse 2 "$1: $2" --transport file --model "$1"; }
 refuse_file models/missing.spm 'cannot be opened: No such file or directory'
 refuse_file out 'is not a file but a directory'
 refuse_file foreign.spm 'is not an SPM model: it does not begin with the letters TACTSPM'
-refuse_file cut.spm "has $((bytes - 1)) bytes where its header states $bytes: it is cut short"
+refuse_file cut.spm "has $((bytes - 1)) bytes, but its header states $bytes: the file is cut short"
 refuse 2 'no?where.spm: cannot be opened' --transport file --model $'no\nwhere.spm'
 refuse 2 'missing.gltf: no such file' missing.gltf
 refuse 2 'missing.rec: cannot be opened' good.spm --device replay:missing.rec
 refuse 2 'missing.so' good.spm --device plugin:./missing.so
 refuse 2 "--motion: no object is called 'cow'; there are good" good.spm --motion tap:cow
-refuse 2 '--pool-mib: 0.25 MiB is too small for 1 model; 0.38 MiB would do for a start' good.spm \
+refuse 2 '--pool-mib: 0.25 MiB is too small for 1 model; at least 0.38 MiB is needed' good.spm \
     --pool-mib 0.25
-softest='0.01 N is 0.02 mm of a wall of 500 N/m, more than the radius'
-refuse 2 "--force-tolerance: $softest of the tool sphere:0.00001; 0 to 0.00495 N" good.spm \
+softest='0.01 N is 0.02 mm at a stiffness of 500 N/m, more than the radius'
+refuse 2 "--force-tolerance: $softest of the tool sphere:0.00001; use 0 to 0.00495 N" good.spm \
     --tool sphere:0.00001 --force-tolerance 0.01
 
 # Memory that nothing needs is neither taken nor locked.

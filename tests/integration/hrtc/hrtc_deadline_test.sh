@@ -12,7 +12,7 @@ refuse 3 'a model is required' deadline-test
 refuse 3 '--load: ' deadline-test --model bumpy --load network
 refuse 3 'none goes with no other' deadline-test --model bumpy --load none,cpu
 for name in run run.txt run.JSON; do
-    refuse 3 "'$name' ends neither in .json nor" deadline-test --model bumpy --report "$name"
+    refuse 3 "'$name' must end in .json or .html" deadline-test --model bumpy --report "$name"
 done
 refuse 3 'must end in .json' deadline-test --model bumpy --report run.html
 refuse 3 '--record' deadline-test --model bumpy --record run.rec
@@ -50,7 +50,7 @@ done
 pass --load cpu,disk
 check run.json load == 2 alone.load == 0 alone.frames == 1000
 grep -q 'beside load (cpu, disk)' run.txt || fault 'the histogram does not tell of the load'
-for title in 'Woken' 'Processor time' 'From the deadline'; do
+for title in 'Wake-up latency' 'Processor time' 'Time from the deadline'; do
     grep -q "^$title" run.txt || fault "no histogram '$title'"
     grep -q "<figcaption>$title" run.html || fault "no chart '$title'"
 done
@@ -71,7 +71,8 @@ others=$(taskset -cp $$ | sed 's/.*: //')
 [[ $others == "$cpu" ]] || ((ending == 1)) || fault "$ending threads may run on processor $cpu"
 stop INT "${started[-1]}"
 ((stopped_with == 2)) || fault "interrupted, it ended with $stopped_with"
-grep -q 'interrupted; nothing is judged' test.log || fault 'it does not say that it was interrupted'
+grep -q 'interrupted; there is no verdict' test.log \
+    || fault 'it does not say that it was interrupted'
 [[ ! -e run.json ]] || fault 'interrupted, it wrote a report'
 [[ -z $(ls temporary) ]] || fault "left behind: $(ls temporary)"
 finish

@@ -53,12 +53,12 @@ domain_says() { # domain_says PATTERN: checks the 18th check.
     "$hrtc" doctor --domain "$domain" --wait 1 >domain.txt || true
     grep -A 3 -E "^(good|advice) +dds-domain" domain.txt | tr -s ' \n' ' ' | grep -q "$1"
 }
-domain_says "^advice dds-domain nobody is heard on domain $domain within 1 s" \
+domain_says "^advice dds-domain no program is heard on domain $domain within 1 s" \
     || fault "doctor --domain: $(cat domain.txt)"
 model bumpy-sphere-5000 ball.spm
 "$publish" ball.spm --domain "$domain" >publish.log 2>&1 &
 started+=("$!")
-wait_until 'word of the doctor on the host' domain_says \
+wait_until 'word of the doctor on the server' domain_says \
     "^good dds-domain .*spm_publish (process $! on $(uname -n)).*models published: ball"
 "$hrtc" doctor --json --domain "$domain" --wait 0.5 >domain.json || true
 check domain.json checks == 18

@@ -27,7 +27,7 @@ check report.json models.0.pose.followed == 1 models.0.pose.accepted '>' 50 \
     force.max_n '>' 0 safety.begun.jump == 0 telemetry.sent '>' 50
 check_steps
 grep -q '^poses  *bumpy: moved in [0-9]* frames' hrtc.log || fault 'the summary tells no poses'
-wait_until 'word of the host on a tool in contact and a pose that is followed' \
+wait_until 'word of the server on a tool in contact and a pose that is followed' \
     grep -q '^watch hrtc-[0-9]*: .* N in contact.*; bumpy .* pages.* pose ' publish.log
 
 # A controller that ignores poses: still visible, but nothing moves.
@@ -46,7 +46,7 @@ wait_for_more_frames 900 publish.log "hrtc-$controller"
 stop_hrtc
 check report.json frames '>' 1500 answers.stale '>' 300 models.0.pose.old_frames '>' 300 \
     models.0.pose.age_max_s '>' 0.5 models.0.static == 1 \
-    safety.begun.stale '>=' 1 safety.begun.host == 0 answers.stale '<' '0.9*frames'
+    safety.begun.stale '>=' 1 safety.begun.server == 0 answers.stale '<' '0.9*frames'
 check_clean report.json
 stop_publisher
 
@@ -86,10 +86,10 @@ bad_line() {
 refuse 3 'needs --poses' --poses-loop
 refuse 2 'missing.txt: cannot be opened' --poses missing.txt
 : >empty.txt
-refuse 2 'empty.txt: holds no line' --poses empty.txt
+refuse 2 'empty.txt: has no line' --poses empty.txt
 printf '0 bumpy 0 0 0 0 0 0 1\n' >still.txt
 refuse 2 'still.txt: --poses-loop needs' --poses still.txt --poses-loop
-bad_line 'is not TIME_S NAME' '1 bumpy 0 0 0'
+bad_line 'is neither TIME_S NAME' '1 bumpy 0 0 0'
 bad_line "time '-1'" '-1 bumpy 0 0 0 0 0 0 1'
 bad_line "no object is called 'bunny'" '1 bunny 0 0 0 0 0 0 1'
 bad_line "'nan' is not a finite" '1 bumpy nan 0 0 0 0 0 1'

@@ -30,7 +30,7 @@ check report.json models.0.faces '>' 19000 tools.0.radius_m '>' 0 \
     pairs.0.answers.exact+pairs.0.answers.separated+pairs.0.answers.within_tolerance '>' 0
 
 check report.json frames == 3000 pools.total_bytes '<=' 2097152 wire.bytes_received '>' 0 \
-    wire.host_lost == 0 work.splits '>' 0 force.max_n '>' 0 force.max_n '<' 20
+    wire.server_lost == 0 work.splits '>' 0 force.max_n '>' 0 force.max_n '<' 20
 check_clean report.json
 check_answers report.json
 

@@ -13,25 +13,24 @@ refuse() { expect "$1" "$2" "$hrtc" "${@:3}"; }
 "$hrtc" --help >help.txt
 for option in --record --replay --export --trace --histograms; do
     grep -q -- "$option " help.txt || fault "hrtc --help does not tell of $option"
-    [[ $option == --export ]] || refuse 3 "$option: *name is needed" --model bumpy "$option" ''
+    [[ $option == --export ]] || refuse 3 "$option: *name is empty" --model bumpy "$option" ''
 done
 refuse 3 'a model is required' --record run.rec
+readonly only='--replay: takes only --kernels, --export, --log-level and --json-log'
 for option in '--model a' '--record a' '--duration 1' '--rate 1000' '--frame-budget-us 100' \
     '--splits 100' '--report a.json'; do
     # shellcheck disable=SC2086 # An option and its value.
-    refuse 3 "--replay: takes --kernels, --export and no other option; ${option% *} was given" \
-        --replay run.rec $option
+    refuse 3 "$only; ${option% *} was given" --replay run.rec $option
 done
-refuse 3 '--replay: takes --kernels, --export and no other option; --allow-no-rt' \
-    --replay run.rec --allow-no-rt
+refuse 3 "$only; --allow-no-rt was given" --replay run.rec --allow-no-rt
 refuse 3 '--record: must be another file than --report' \
     --model bumpy --record a.json --report a.json
 refuse 3 '--export: needs --replay' --model bumpy --export a.csv
-refuse 3 "--export: 'a.xml' ends neither in .csv nor in .jsonl or .mcap" --replay a --export a.xml
+refuse 3 "--export: 'a.xml' must end in .csv, .jsonl or .mcap" --replay a --export a.xml
 refuse 3 "--export: 'a.csv' is given twice" --replay a --export a.csv --export a.csv
 refuse 3 '--export: must be another file than --replay' --replay a.csv --export a.csv
 for option in --trace --histograms; do
-    refuse 3 "--virtual-time: takes no time that $option could tell of" \
+    refuse 3 "--virtual-time: $option would have no times" \
         --transport file --model a.spm --virtual-time "$option" a
 done
 refuse 3 '--trace: must be another file than --record' --model a --record a --trace a
@@ -74,7 +73,7 @@ said=$("$hrtc" --replay run.rec) || fail "the replay ended with $?: $said"
 said=$("$hrtc" --replay run.rec --kernels portable) || fail "portable: ended with $?: $said"
 [[ "$said" == 'run.rec: 2000 frames agree bit for bit; '* ]] || fault "portable: it says: $said"
 for kind in --replay --model; do
-    refuse 3 "--kernels: 'sse' is none that this processor runs: portable" \
+    refuse 3 "--kernels: 'sse' is not one of the kernels for this processor: portable" \
         "$kind" run.rec --kernels sse
 done
 
@@ -103,13 +102,13 @@ code=0
 # Truncated copy: the complete part is replayed, exported and played by a device.
 head -c $(($(stat -c %s run.rec) - 100)) run.rec >cut.rec
 "$hrtc" --replay cut.rec --export cut.csv >said.txt 2>&1 || fault "a cut recording: $(<said.txt)"
-grep -q 'cut.rec: [0-9]* frames agree .*; the file was cut: behind frame ' said.txt \
+grep -q 'cut.rec: [0-9]* frames agree .*; the file is incomplete: after frame ' said.txt \
     || fault "a cut recording is not said to be one: $(<said.txt)"
 frames=$(grep -o '[0-9]* frames agree' said.txt)
 (($(wc -l <cut.csv) == ${frames%% *} + 1)) || fault 'not every whole frame was exported'
 "$hrtc" --allow-no-rt --virtual-time --transport file --model bumpy.spm --duration 0.5 \
     --device replay:cut.rec >said.txt 2>&1 || fault "a cut recording as a device: $(<said.txt)"
-grep -q 'cut.rec: the file was cut: behind frame ' said.txt \
+grep -q 'cut.rec: the file is incomplete: after frame ' said.txt \
     || fault "a device's recording is not said to be cut: $(<said.txt)"
 
 # One bit of one input.
@@ -132,9 +131,10 @@ refuse_file missing.rec 'cannot be opened'
 refuse_file folder 'is not a file but a directory'
 refuse_file empty.rec 'at byte 0: the file is empty'
 refuse_file bumpy.spm 'at byte 0: is not a Tactus recording'
-refuse_file five.rec 'at byte 0: the file is cut short: 12 bytes are needed here and 5 are left'
-refuse_file start.rec 'at byte *: the file is cut short: no frame is whole'
-refuse_file long.rec 'at byte *: the end section is followed by 1 bytes; nothing may follow it'
+refuse_file five.rec \
+    'at byte 0: the file is cut short: 12 bytes are needed at this point, but 5 are left'
+refuse_file start.rec 'at byte *: the file is cut short: no frame is complete'
+refuse_file long.rec 'at byte *: 1 byte after the end section, which must be the last'
 refuse_file bent.rec 'at byte *: section of kind 2 and * bytes is damaged: its checksum'
 refuse_file newer.rec 'at byte 8: format version 255 is unknown; this program reads 12'
 refuse 2 'no?where.rec: cannot be opened' --replay $'no\nwhere.rec'

@@ -66,7 +66,7 @@ for file in flat.off line.off; do
     touch_file 1 "hull:$file,0.001"
 done
 
-expect 2 "--fixture: 'gripper:0': the device sim makes no force at a gripper" \
+expect 2 "--fixture: 'gripper:0': the device sim has no gripper force" \
     "$hrtc" --allow-no-rt ball.spm --fixture gripper:0
 
 # Hands move 6-DoF tools; these have a mass that gravity compensation carries, and a spring pulls
@@ -91,7 +91,7 @@ import csv
 sent = [float(line["tool0.sent_gripper_n"] or 0) for line in csv.DictReader(open("peg.csv"))]
 assert min(sent) == -0.5 and max(sent) == 0 and sent.count(-0.5) > 4000, (min(sent), max(sent))
 PYTHON
-grep -q 'force off for: .*clutch' hrtc.log || fault 'nobody tells of the clutch'
+grep -q 'force off, causes: .*clutch' hrtc.log || fault 'nobody tells of the clutch'
 
 # The probe streams from the same server.
 "$build" --shape torus --faces 3000 --fit-diag 0.1 -o probe.spm >build.log 2>&1
@@ -137,10 +137,10 @@ was_held_up report.json || check report.json answers.exact '>' 0
 refuse() { expect 2 "$1" "$hrtc" --allow-no-rt --transport file --model ball.spm --tool "$2"; }
 refuse 'none.off' hull:none.off
 refuse 'none.spm' mesh:none.spm
-refuse "'ball.spm' is touched as well" mesh:ball.spm
-expect 2 'kg weigh 9.81 N; the device sim carries half of' "$hrtc" --allow-no-rt \
+refuse "'ball.spm' is the model of an object as well" mesh:ball.spm
+expect 2 'kg weigh 9.81 N; the device sim carries at most half of' "$hrtc" --allow-no-rt \
     --transport file --model ball.spm --tool-mass 1
-expect 2 'turn with 0.392 N m' "$hrtc" --allow-no-rt --transport file --model ball.spm \
+expect 2 'cause a torque of 0.392 N m' "$hrtc" --allow-no-rt --transport file --model ball.spm \
     --tool box:0.04,0.03,0.02 --tool-mass 0.2,0.2,0,0
 {
     printf 'OFF\n65 1 0\n'

@@ -32,9 +32,9 @@ start_hrtc --transport file --model bumpy.spm --device "udp:$port" --device-fram
 wait_for_line hrtc.log 'touch: '
 wait_for_more "$driving" 500 # This hand is still above; the second one touches.
 stop KILL "$driving"
-wait_for_line hrtc.log 'is gone; no force until'
+wait_for_line hrtc.log 'is disconnected; no force until'
 drive # The second one waits for the first one's place.
-wait_until 'device that is back' grep -q 'tool 0: its device, .*, is back' hrtc.log
+wait_until 'device that is back' grep -q 'tool 0: the device .* is connected again' hrtc.log
 wait_for_more "$driving" 2500
 kill -TERM "$controller"
 end_hrtc 1
@@ -57,7 +57,7 @@ for id in "$stranger" "$plain" "$driving"; do wait_for_more "$id" 500; done
 stop_hrtc
 check report.json frames '>' 300 tools.0.traffic.sessions '>=' 1 tools.0.traffic.samples '>' 100 \
     tools.0.traffic.refused.tag '>' 10 tools.0.traffic.refused.foreign == 0
-grep -q "tool 0: [0-9]* datagrams .* refused, most of them: not authenticated by the key" hrtc.log \
+grep -q "tool 0: [0-9]* datagrams .* refused, mostly: not authenticated by the key" hrtc.log \
     || fault 'no line tells of the strangers'
 for id in "$stranger" "$plain" "$driving"; do stop KILL "$id"; done
 
@@ -77,7 +77,7 @@ driving=$!
 started+=("$driving")
 run_hrtc --transport file --model bumpy.spm --device "udp:$port" --device-frame 0,0,0.06 \
     --duration 5
-grep -q '^tool .* on c, 0.2 m round (0, 0, 0.06)' hrtc.log \
+grep -q '^tool .* on c, 0.2 m around (0, 0, 0.06)' hrtc.log \
     || fault "another device: $(cat hrtc.log)"
 check report.json tools.0.contact_share '>' 0.05 tools.0.force_max_n '>' 0.2 \
     tools.0.traffic.refused.content == 0 tools.0.traffic.refused.checksum == 0

@@ -71,7 +71,7 @@ done
 ! get "$served" 'Host: elsewhere:80' >/dev/null 2>&1 || fault 'another name is answered'
 ! get "$served" 'Origin: http://elsewhere' >/dev/null 2>&1 || fault 'another page is answered'
 port=${served##*:}
-expect 2 "port ${port%/*} of 127.0.0.1 can't be had: *; give another with --metrics" \
+expect 2 "port ${port%/*} of 127.0.0.1 is not available: *; set another with --metrics" \
     "$publish" --domain "$domain" torus.spm --metrics "${port%/*}"
 expect 3 "--metrics: '65536' is not a whole number in 0 .. 65535" "$publish" torus.spm \
     --metrics 65536

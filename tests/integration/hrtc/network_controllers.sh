@@ -30,21 +30,21 @@ for ((kill = 1; kill <= kills; ++kill)); do
     ((kill > 1)) || first_kib=$(resident_kib "$publisher") # The first two are served.
 done
 last_kib=$(resident_kib "$publisher")
-echo "the host has $first_kib, later $last_kib KiB"
-[[ -n "$sanitizer" ]] || ((last_kib - first_kib <= 1024)) || fault 'the host grows with each kill'
+echo "the server has $first_kib, later $last_kib KiB"
+[[ -n "$sanitizer" ]] || ((last_kib - first_kib <= 1024)) || fault 'the server grows with each kill'
 
 controller=$steady
 mv steady.log hrtc.log
 stop_hrtc
-(($(lines_of_host large hrtc.log) == 0)) || fault 'it was told of a host that went'
-check steady.json frames '>' 1000 wire.host_lost == 0 safety.begun.host == 0 \
+(($(lines_of_server large hrtc.log) == 0)) || fault 'it was told of a server that went'
+check steady.json frames '>' 1000 wire.server_lost == 0 safety.begun.server == 0 \
     answers.exact+answers.separated+answers.within_tolerance '>' '0.9*frames'
 check_wire_run steady.json
 check_contact steady.json force.contact_share 0.3
 judge_run large.spm
 
 run_hrtc --model large --device sim:touch --pool-mib 2 --duration 2 --record run.rec
-check report.json frames == 2000 wire.host_lost == 0 safety.begun.host == 0 \
+check report.json frames == 2000 wire.server_lost == 0 safety.begun.server == 0 \
     answers.exact+answers.separated+answers.within_tolerance '>' '0.9*frames'
 check_wire_run report.json
 check_contact report.json force.contact_share 0.3

@@ -45,7 +45,7 @@ done
 touch_large_model
 count_frames counts.json
 check counts.json to_controller.lost+to_controller.duplicated+to_controller.cut == 0 \
-    to_host.lost+to_host.duplicated+to_host.cut == 0 \
+    to_server.lost+to_server.duplicated+to_server.cut == 0 \
     to_controller.udp_payload_bytes '>' '1*to_controller.udp_datagrams'
 
 exec {relay_in}>&- # Simulates the death of its controlling process.

@@ -27,10 +27,10 @@ touch_while() {
 end_touch() {
     stop_hrtc
     cat publish.log
-    [[ $(grep "model 'served'" hrtc.log | grep -cv "doesn't come; \|has come after all") == 0 ]] \
-        || fault 'a line about the host, which was there'
-    check report.json frames '>' $((changed_at + 500)) wire.host_lost == 0 safety.begun.host == 0 \
-        models.0.host_connected == 1
+    [[ $(grep "model 'served'" hrtc.log | grep -cv "has not arrived; \|has arrived late") == 0 ]] \
+        || fault 'a line about the server, which was there'
+    check report.json frames '>' $((changed_at + 500)) wire.server_lost == 0 \
+        safety.begun.server == 0 models.0.server_connected == 1
     check_wire_run report.json
     judge_run large.spm "$changed_at"
     stop_publisher
@@ -45,9 +45,9 @@ replace() {
 # fail_to_serve PATTERN COMMAND...: server and controller name the data that cannot be served.
 fail_to_serve() {
     touch_while "${@:2}"
-    wait_until 'word of the host' grep -q "$1" publish.log
+    wait_until 'word of the server' grep -q "$1" publish.log
     wait_until 'missing chunk' \
-        grep -q "model 'served': chunk [0-9]* doesn't come; the surface there stays coarse" hrtc.log
+        grep -q "model 'served': chunk [0-9]* has not arrived; the surface there stays" hrtc.log
     end_touch
     check report.json models.0.pieces_missing '>' 0
 }

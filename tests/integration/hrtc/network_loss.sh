@@ -9,12 +9,12 @@ start_relay --delay-ms 2 --jitter-ms 2 --loss 0.01 --duplicates 0.01 --seed 7
 touch_large_model
 
 count_frames counts.json
-for direction in to_controller to_host; do
+for direction in to_controller to_server; do
     check counts.json $direction.lost '>' 0 $direction.duplicated '>' 0 \
         $direction.lost '<' "0.05*$direction.frames"
 done
 pieces=$(sent_pieces)
-echo "the host sent $pieces pieces"
+echo "the server sent $pieces pieces"
 check report.json cache.loads '<=' "$pieces" cache.loads '>' 20
 stop TERM "$relay"
 ((stopped_with == 0)) || fault "network_relay ended with $stopped_with"

@@ -14,26 +14,26 @@ start_hrtc --model large --device sim:touch --pool-mib 8 --no-static --duration 
     --record run.rec --report report.json
 wait_for_contact publish.log
 stop KILL "$publisher"
-wait_for_line hrtc.log "host of model 'large' is gone; going on with what is resident"
+wait_for_line hrtc.log "server of model 'large' disconnected; the resident data stay in use"
 
 start_publisher large.spm --watch
-wait_for_line hrtc.log 'is served again, by another host or a restarted one with the same file'
+wait_for_line hrtc.log 'is served again, by another server or a restarted one with the same file'
 wait_for_line publish.log ' subscribed'
 wait_for_more_frames 500 publish.log
 stop KILL "$publisher"
-wait_for_line hrtc.log 'is gone' 2
+wait_for_line hrtc.log 'disconnected' 2
 
 start_publisher other.spm --name large
 wait_for_line hrtc.log "model 'large' is now published with another hash"
 stop_hrtc
 cat publish.log
-[[ $(lines_of_host large hrtc.log) == 5 && $(lines 'is gone' hrtc.log) == 2 \
+[[ $(lines_of_server large hrtc.log) == 5 && $(lines 'disconnected' hrtc.log) == 2 \
     && $(lines 'served again' hrtc.log) == 1 && $(lines 'another hash' hrtc.log) == 1 ]] \
-    || fault 'not a line for each host that goes, two for the one that is back, one for the other'
+    || fault 'not a line for each server that goes, two for the one that is back, one for the other'
 [[ $(lines ' subscribed' publish.log) == 0 ]] || fault 'the other file was asked for'
 
-check report.json frames '>' 1500 wire.host_lost == 1 models.0.host_connected == 0 \
-    safety.begun.host == 2 models.0.static == 0 cache.evictions == 0 \
+check report.json frames '>' 1500 wire.server_lost == 1 models.0.server_connected == 0 \
+    safety.begun.server == 2 models.0.static == 0 cache.evictions == 0 \
     pools.pages.used_max+pools.index_pages.used_max == '1*cache.loads'
 check_wire_run report.json
 judge_run large.spm
@@ -43,7 +43,7 @@ check judged.json violations '>' 0
 
 # A controller that starts now takes the present file.
 run_hrtc --model large --device sim:touch --pool-mib 2 --duration 2 --record run.rec
-check report.json wire.host_lost == 0 safety.begun.host == 0
+check report.json wire.server_lost == 0 safety.begun.server == 0
 check_wire_run report.json
 check_contact report.json force.contact_share 0.3
 judge_run other.spm
@@ -54,10 +54,11 @@ start_publisher small.spm --watch
 start_hrtc --model small --device sim:touch --duration 600 --record run.rec --report report.json
 wait_for_contact publish.log
 stop KILL "$publisher"
-wait_for_line hrtc.log "host of model 'small' is gone"
+wait_for_line hrtc.log "server of model 'small' disconnected"
 wait_for_more "$controller"
 stop_hrtc
-check report.json frames '>' 1000 wire.host_lost == 1 safety.begun.host == 0 models.0.static == 1
+check report.json frames '>' 1000 wire.server_lost == 1 safety.begun.server == 0 \
+    models.0.static == 1
 check_wire_run report.json
 judge_run small.spm $(($(recorded_frames) - 500)) # The rest is without a server.
 check_span_contact 1 0.3

@@ -21,8 +21,8 @@ start_controller() {
     started+=("$controller")
 }
 
-# start_host FILE: starts a server with its output in FILE.
-start_host() {
+# start_server FILE: starts a server with its output in FILE.
+start_server() {
     start_publisher ball.spm --scene shared --poses swing.txt --poses-loop --watch
     mv publish.log "$1" # The server continues to write there.
 }
@@ -41,17 +41,17 @@ model bumpy-sphere-5000 ball.spm
 # A machine that stalls a server longer than its liveliness makes the controllers take the other
 # one: the run is then repeated with a note, five times in all.
 for try in 1 2 3 4 5; do
-    start_host first.log
+    start_server first.log
     first=$publisher
     start_controller left
     left=$controller
     start_controller right
     right=$controller
     wait_for_line first.log ' subscribed' 2
-    start_host second.log
+    start_server second.log
     touch_both first.log
     [[ $(lines ' subscribed' second.log) != 0 ]] || break
-    ((try < 5)) || fail 'the second host was asked'
+    ((try < 5)) || fail 'the second server was asked'
     echo "held up by the machine, run $try"
     for id in "$left" "$right" "$first" "$publisher"; do
         stop KILL "$id"
@@ -59,7 +59,7 @@ for try in 1 2 3 4 5; do
     sleep 2 # Longer than a lease: no event reports that both leases have ended.
 done
 stop KILL "$first"
-wait_for_line left.log "model 'ball' is served again, by another host"
+wait_for_line left.log "model 'ball' is served again, by another server"
 wait_for_line second.log ' subscribed' 2
 touch_both second.log
 for name in left right; do
@@ -74,7 +74,7 @@ for name in left right; do
         scene.changes_refused.old_generation == 0 scene.changes_refused.bad_pose == 0 \
         models.0.pose.followed == 1 models.0.pose.accepted '>' 50 \
         models.0.pose.moves '>' 100 models.0.pose.refused.rotation == 0 \
-        models.0.pose.step_max_m '<' 0.01 models.0.pieces_refused == 0 wire.host_lost == 0 \
+        models.0.pose.step_max_m '<' 0.01 models.0.pieces_refused == 0 wire.server_lost == 0 \
         force.max_n '>' 0 force.max_n '<=' "$touch_force_max_n" \
         answers.exact+answers.separated+answers.within_tolerance+answers.bounded+answers.stale \
             == '1*frames'

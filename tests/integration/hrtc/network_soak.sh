@@ -9,7 +9,7 @@ readonly cycles=$7
 # Permitted growth after the first cycle: the C library returns memory late, Cyclone adds receive
 # buffers of 1 MiB each, and keeps 0.8 KB of each subscription that a server has served
 # (docs/protocol.md, "Limits").
-declare -rA slack_kib=([host]=$((512 + 32 * cycles)) [controller]=$((1024 + 32 * cycles)))
+declare -rA slack_kib=([server]=$((512 + 32 * cycles)) [controller]=$((1024 + 32 * cycles)))
 
 open_files() { find "/proc/$1/fd" -mindepth 1 | wc -l; }
 
@@ -63,18 +63,18 @@ served=0
 for ((cycle = 1; cycle <= cycles; ++cycle)); do
     short_controller "$cycle"
     relay_say cut
-    wait_for_line hrtc.log 'is gone' "$cycle"
+    wait_for_line hrtc.log 'disconnected' "$cycle"
     wait_for_line publish.log ' left (' $((2 * cycle))
     relay_say restore
     served=$((served + 1))
     wait_for_line hrtc.log 'is served again' "$served"
     wait_for_line publish.log ' subscribed' $((2 * cycle + 1))
-    check_holdings host "$publisher" "$cycle"
+    check_holdings server "$publisher" "$cycle"
     check_holdings controller "$controller" "$cycle"
 done
 for ((cycle = 1; cycle <= cycles; ++cycle)); do
     stop KILL "$publisher"
-    wait_for_line hrtc.log 'is gone' $((cycles + cycle))
+    wait_for_line hrtc.log 'disconnected' $((cycles + cycle))
     start_publisher large.spm
     served=$((served + 1))
     wait_for_line hrtc.log 'is served again' "$served"
@@ -83,9 +83,9 @@ for ((cycle = 1; cycle <= cycles; ++cycle)); do
 done
 
 stop_hrtc
-(($(lines_of_host large hrtc.log) == 5 * cycles)) \
-    || fault 'not two lines for each loss, and one for each host that is followed'
-check report.json models.0.host_connected == 1 models.0.static == 0 safety.begun.host '>' 0
+(($(lines_of_server large hrtc.log) == 5 * cycles)) \
+    || fault 'not two lines for each loss, and one for each server that is followed'
+check report.json models.0.server_connected == 1 models.0.static == 0 safety.begun.server '>' 0
 check_wire_run report.json
 judge_run large.spm
 check_span_contact 0 0.1

@@ -67,14 +67,14 @@ print(*(each["name"] for each in setup["models"]),
 contact=0 run_hrtc made/scene.gltf --duration 1 --material 300 --material cup:700,0.6,0.4 \
     --motion approach:cup-2 --record named.rec
 told named.rec 'tetra tetra-mirrored cup:700 cup-2:300 jar:300'
-grep -q '^touches     cup (tetra): 0.1 x 0.1 x 0.1 m, round' hrtc.log || fault "$(cat hrtc.log)"
+grep -q '^touches     cup (tetra): 0.1 x 0.1 x 0.1 m, around' hrtc.log || fault "$(cat hrtc.log)"
 
 # Served models, with the pose of the first object.
 start_publisher made/scene.gltf
 grep -q "^serving 'tetra-mirrored' " publish.log || fault 'a model is not served'
 grep -qx "showing 3 objects as scene 'scene'" publish.log || fault 'not all objects are shown'
 contact=0 run_hrtc --model tetra --duration 2
-grep -q '^touches     cup (tetra): 0.1 x 0.1 x 0.1 m, round (0.3, 0.05, 0.05)$' hrtc.log \
+grep -q '^touches     cup (tetra): 0.1 x 0.1 x 0.1 m, around (0.3, 0.05, 0.05)$' hrtc.log \
     || fault "it is not described where it stands: $(grep '^touches' hrtc.log)"
 check report.json models.0.pose.followed == 1 models.0.pose.accepted '>=' 1 \
     models.0.pose.old_frames '<' 1000 models.0.pose.step_max_m == 0 \
@@ -82,7 +82,7 @@ check report.json models.0.pose.followed == 1 models.0.pose.accepted '>=' 1 \
 contact=0 run_hrtc --scene scene --duration 1 --material jar:250 --material late:100 \
     --record served.rec
 told served.rec 'tetra tetra-mirrored cup:400 cup-2:0 jar:250'
-grep -q "note: --material: no object is called 'late'; there are cup, cup-2, jar; one that" \
+grep -q "note: --material: no object is called 'late'; there are cup, cup-2, jar; an object" \
     hrtc.log || fault 'a name that no object has is not told'
 stop_publisher
 
@@ -94,7 +94,7 @@ sed 's/"mode": 1/"mode": 4/; s/"touch": false/"touch": true/; s/"count": 12/"cou
     scene.gltf >corners.gltf
 expect 2 "uneven.gltf: node 'jar' (nodes\[3\]) scales its axes" "$build" uneven.gltf -o made
 expect 2 "corners.gltf: mesh 'tetra' (meshes\[0\]): *11 corners" "$build" corners.gltf -o other
-expect 2 "made/scene.gltf: node 'cup' (nodes\[0\]) names its model already" \
+expect 2 "made/scene.gltf: node 'cup' (nodes\[0\]) names a model already" \
     "$build" made/scene.gltf -o other
 expect 2 'scene.gltf: can'\''t be written: File exists' "$build" scene.gltf -o scene.gltf
 expect 2 'no/where: can'\''t be written: No such file' "$build" scene.gltf -o no/where
@@ -110,11 +110,12 @@ refuse_serving 2 "scene.gltf: node 'cup' (nodes\[1\]) names no model" scene.gltf
 refuse_serving 3 'FILE: a scene is served alone' made/scene.gltf made/tetra.spm
 refuse_serving 3 '--name: a scene is served alone' made/scene.gltf --name a
 refuse() { expect "$1" "$2" "$hrtc" --allow-no-rt "${@:3}"; }
-refuse 3 '--scene: takes the place of --model' --transport file --scene made/scene.gltf --model a
+refuse 3 "--scene: can't be combined with --model" --transport file \
+    --scene made/scene.gltf --model a
 refuse 2 "--scene: scene.gltf: node 'cup' (nodes\[1\]) names no model" --transport file \
     --scene scene.gltf
-refuse 2 '--objects: 2; 3 are there from the start' --transport file --scene made/scene.gltf \
-    --objects 2
+refuse 2 '--objects: 2 is less than the 3 objects at the start' --transport file \
+    --scene made/scene.gltf --objects 2
 refuse 2 "--material: no object is called 'cap'; cup?" made/scene.gltf --material cap:300
 refuse 2 "--motion: no object is called 'pot'; there are cup, cup-2, jar" made/scene.gltf \
     --motion tap:pot

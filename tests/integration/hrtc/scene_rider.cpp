@@ -221,7 +221,7 @@ private:
 
 int run(int argc, char** argv)
 {
-    CommandLine line("scene_rider", "Flies through a host's scene and tells what held it up.");
+    CommandLine line("scene_rider", "Flies through a server's scene and tells what held it up.");
     Arguments arguments;
     line.add_option("--scene", arguments.scene, "Its name").required();
     line.add_option("--domain", arguments.domain, "DDS domain id").integer_between(0, 232);

@@ -20,7 +20,7 @@ use_example() {
         "$example" >"$1.xml"
     side[3]="CYCLONEDDS_URI=file://$PWD/$1.xml"
 }
-use_example on_host
+use_example on_server
 use_example on_controller
 
 touch_large_model
@@ -34,15 +34,15 @@ ports_of() {
         ((port < first_port || port >= next_port)) || echo "$((port - first_port))"
     done | sort -n | tr '\n' ' '
 }
-heard=$(ports_of in_host_network)
-[[ "$heard" == '10 11 ' ]] || fault "the host hears on $first_port and: $heard"
+heard=$(ports_of in_server_network)
+[[ "$heard" == '10 11 ' ]] || fault "the server hears on $first_port and: $heard"
 
 # The doctor finds the server and its models.
-hears_host() {
+hears_server() {
     in_controller_network "$hrtc" doctor --json --domain "$domain" --wait 1 >doctor.json || true
     grep -q 'spm_publish (process .*models published: large' doctor.json
 }
-wait_until 'word of the doctor on the host' hears_host
+wait_until 'word of the doctor on the server' hears_server
 
 # Nothing passes from another domain, and nothing is found.
 wrong=$(((domain + 7) % 200))

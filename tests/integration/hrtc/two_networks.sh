@@ -28,14 +28,14 @@ start_relay() {
     relay_out=${relay_process[0]}
     started+=("$relay")
     read -r -t "$patience_s" ready <&"$relay_out" || fail "network_relay $*: $(cat relay.log)"
-    [[ "$ready" =~ \"host\":\{$side\},\"controller\":\{$side\} ]] || fail "not ready: $ready"
+    [[ "$ready" =~ \"server\":\{$side\},\"controller\":\{$side\} ]] || fail "not ready: $ready"
     local part=("${BASH_REMATCH[@]}")
     # Both exec the started program, so that its id is that of the process.
-    on_host=(nsenter "--net=/proc/$relay/fd/${part[1]}" env "CYCLONEDDS_URI=${part[2]}")
+    on_server=(nsenter "--net=/proc/$relay/fd/${part[1]}" env "CYCLONEDDS_URI=${part[2]}")
     on_controller=(nsenter "--net=/proc/$relay/fd/${part[3]}" env "CYCLONEDDS_URI=${part[4]}")
 }
 
-in_host_network() { "${on_host[@]}" "$@"; }
+in_server_network() { "${on_server[@]}" "$@"; }
 in_controller_network() { "${on_controller[@]}" "$@"; }
 
 # relay_say COMMAND: stores the answer in $relay_answer.
@@ -49,7 +49,7 @@ relay_say() {
 count_frames() {
     relay_say count
     printf '%s\n' "$relay_answer" | tee "$1"
-    for direction in to_controller to_host; do
+    for direction in to_controller to_server; do
         check "$1" "$direction.udp_datagrams" '>' 0 \
             "$direction.dropped_full+$direction.missed+$direction.refused_by_system" == 0
     done
@@ -61,7 +61,7 @@ touch_large_model() {
     model bumpy-sphere-100000 large.spm
     start_publisher large.spm
     run_hrtc --model large --device sim:touch --pool-mib 2 --duration 2 --record run.rec
-    check report.json frames == 2000 wire.host_lost == 0 safety.begun.host == 0 \
+    check report.json frames == 2000 wire.server_lost == 0 safety.begun.server == 0 \
         answers.exact+answers.separated+answers.within_tolerance '>' '0.9*frames'
     check_wire_run report.json
     check_contact report.json force.contact_share 0.3

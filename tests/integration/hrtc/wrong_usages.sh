@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # wrong_usages.sh: wrong usage of each kind and program ends it with its code and one line on
-# stderr; nothing is left behind. HrtcOptions and HostOptions cover further wrong usage.
+# stderr; nothing is left behind. HrtcOptions and ServerOptions cover further wrong usage.
 source "$(dirname "$0")/common.sh"
 readonly view=$1/spm_view
 : >mesh.obj
@@ -22,7 +22,7 @@ refuse() {
     fi
 }
 
-readonly missing='a model is required: hrtc FILE.spm, or --model NAME of one that is published'
+readonly missing='a model is required: hrtc FILE.spm, or --model NAME for a published model'
 refuse 3 "hrtc: $missing; see --help" "$hrtc"
 refuse 3 "hrtc deadline-test: $missing; see --help" "$hrtc" deadline-test
 refuse 3 'hrtc doctor: --wait requires --domain; see --help' "$hrtc" doctor --wait 1
@@ -37,14 +37,14 @@ refuse 2 "hrtc: --config: missing.toml: no such file" "$hrtc" --config missing.t
 refuse 3 'spm_build: --output is required; see --help' "$build" mesh.obj
 refuse 3 'spm_build: --unit excludes --fit-diag; see --help' \
     "$build" mesh.obj --unit mm --fit-diag 0.2 -o a.spm
-refuse 3 "spm_build: --output: 'a.stl' is the name of no model; one ends in .spm" \
+refuse 3 "spm_build: --output: 'a.stl' must end in .spm" \
     "$build" mesh.obj -o a.stl
-refuse 3 'spm_build: --output: a glTF scene needs a folder, which gets its models' \
+refuse 3 'spm_build: --output: a glTF scene needs a folder for its models, not an .spm file' \
     "$build" scene.gltf -o made.spm
 refuse 3 "spm_inspect: 'ball.spm': nothing takes this word; see --help" \
     "$inspect" ball.spm ball.spm
-refuse 3 "spm_inspect: FILE: 'mesh.obj' is a mesh; spm_build mesh.obj -o MODEL.spm makes a model \
-of it" "$inspect" mesh.obj
+refuse 3 "spm_inspect: FILE: 'mesh.obj' is a mesh; build a model with: spm_build mesh.obj -o \
+MODEL.spm" "$inspect" mesh.obj
 refuse 3 'spm_inspect: --extract needs --faces, --error or --region; see --help' \
     "$inspect" ball.spm --extract -o a.ply
 refuse 3 "spm_publish: --domain: '233' is not a whole number in 0 .. 232; see --help" \
@@ -54,7 +54,7 @@ refuse 3 'spm_publish: --domain: is given twice; see --help' \
 refuse 3 "spm_publish: --name 'a?b' is not 1 to 63 bytes of letters, digits, . _ -" \
     "$publish" ball.spm --name $'a\nb'
 refuse 3 'spm_view: --domain excludes --replay; see --help' "$view" --replay a.rec --domain 3
-refuse 3 'spm_view: --replay: 3 recordings, two at most are compared' \
+refuse 3 'spm_view: --replay: 3 recordings; at most 2 can be compared' \
     "$view" --replay a --replay b --replay c
 
 # Each line on stderr is one JSON object with --json-log.
@@ -89,7 +89,7 @@ for line in lines:
 PYTHON
 [[ -z $("$build" --shape torus --faces 1001 -o big.spm --log-level warning 2>&1 >/dev/null) ]] \
     || fault 'a note is told that was not to be'
-[[ $("$hrtc" help) == *'Each has a --help of its own.' ]] || fault 'hrtc help'
+[[ $("$hrtc" help) == *'Each command has its own --help.' ]] || fault 'hrtc help'
 rm -f logged.txt big.spm
 [[ $(ls -A) == "$before" ]] || fault "left behind: $(ls -A)"
 finish

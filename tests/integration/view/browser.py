@@ -251,7 +251,7 @@ def drawn(browser):
 def look(browser, url, serve):
     browser.resize(1440, 900)
     browser.open(f"{url}?theme=light",
-                 lambda: "waits for a controller on DDS domain" in browser.text("waits"),
+                 lambda: "waiting for a controller on DDS domain" in browser.text("waits"),
                  "what the page waits for")
     hand = serve()
     eventually(lambda: browser.text("faces").endswith("faces"), "the controller's faces")
@@ -283,7 +283,7 @@ def look(browser, url, serve):
     browser.press("freeze", "false")
     hand.terminate()
     eventually(lambda: hand.poll() is not None, "hrtc's end")
-    eventually(lambda: "waits for" in browser.text("waits"), "that the controller has gone")
+    eventually(lambda: "waiting for" in browser.text("waits"), "that the controller has gone")
     expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
 
 
@@ -361,7 +361,7 @@ def played(browser, url):
         return int(found[1].replace(",", "")) if found else -1
     browser.resize(1440, 900)
     browser.open(url, lambda: "the length" in browser.text("film-notes"), "what differs")
-    first = re.search(r"frame (\d+): the hands, in \d+ of 300 frames", browser.text("film-notes"))
+    first = re.search(r"frame (\d+): the device poses, in \d+ of 300 frames", browser.text("film-notes"))
     expect(first is not None, "it doesn't say where hands differ: " + browser.text("film-notes"))
     eventually(lambda: browser.text("faces").endswith("faces"), "a recording's faces")
     browser.click("play")

@@ -41,14 +41,14 @@ tell hrtc "$gone" "$(first_after "$gone" on)" 60
 
 # Detected after 500 ms; then the force fades within 50, and none returns before a server does.
 kill_it spm_publish
-gone=$(journalctl -o short-monotonic -u hrtc | grep -F 'is gone; going on' \
+gone=$(journalctl -o short-monotonic -u hrtc | grep -F 'disconnected; the resident data' \
     | sed 's/^\[ *\([0-9.]*\)\].*/\1/')
 again=$(systemctl show -P ExecMainStartTimestampMonotonic spm_publish)
 again=${again%??????}.${again: -6}
 [[ $(journalctl -o cat -u hrtc | grep -c 'is served again') == 1 ]] || fail 'not served again'
-echo "host killed at $at, gone $gone, started again $again"
+echo "server killed at $at, gone $gone, started again $again"
 felt=$(awk -v from="$gone" -v to="$again" '$1 > from + 0.06 && $1 < to && $2 == "on"' hand.log)
-[[ -z "$felt" ]] || fail "without a host a force is felt: $(tail -n 20 hand.log)"
+[[ -z "$felt" ]] || fail "without a server a force is felt: $(tail -n 20 hand.log)"
 tell spm_publish "$gone" "$(first_after "$again" on)" 600
 
 # The wall clock is set back an hour: nothing here depends on it.

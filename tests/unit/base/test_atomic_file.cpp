@@ -183,8 +183,8 @@ TEST(AtomicFile, finds_out_before_a_run_whether_a_file_can_be_written_and_leaves
     EXPECT_EQ(content_of(directory.path() / "old.bin"), "old");
     const auto refused = AtomicFile::probe(directory.path());
     ASSERT_TRUE(refused);
-    EXPECT_EQ(refused->text,
-              directory.path().string() + ": can't be written: it is a directory, device or pipe");
+    EXPECT_EQ(refused->text, directory.path().string() +
+                                 ": can't be written: the path is a directory, device or pipe");
 }
 
 TEST(AtomicFile, refuses_one_too_many_and_takes_one_more_after_a_release)

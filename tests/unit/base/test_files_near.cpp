@@ -19,7 +19,7 @@ TEST(FilesNear, is_the_file_with_the_ending_that_was_left_out)
     const test::TemporaryFolder folder;
     std::ofstream(folder.path() / "plate.spm") << "x";
     const std::string path = (folder.path() / "plate").string();
-    EXPECT_EQ(files_near(path, ".spm"), "; " + path + ".spm is there");
+    EXPECT_EQ(files_near(path, ".spm"), "; " + path + ".spm exists");
 }
 
 TEST(FilesNear, lists_what_else_the_folder_has)
@@ -39,7 +39,7 @@ TEST(FilesNear, lists_what_else_the_folder_has)
     }
     EXPECT_EQ(files_in(path, ".spm"), "a.spm, b.spm, c.spm, d.spm, e.spm and 2 more");
     EXPECT_EQ(files_near(path + "/nowhere/ball.spm", ".spm"),
-              "; there is no folder " + path + "/nowhere");
+              "; no such folder: " + path + "/nowhere");
 }
 
 } // namespace

@@ -19,8 +19,8 @@ TEST(ProgramLog, names_the_program_before_what_is_wrong)
 {
     EXPECT_EQ(log_text(kPlain, LogLevel::error, "hrtc", "no such file", kThen),
               "hrtc: no such file");
-    EXPECT_EQ(log_text(kPlain, LogLevel::warning, "hrtc", "the host is gone", kThen),
-              "hrtc: the host is gone");
+    EXPECT_EQ(log_text(kPlain, LogLevel::warning, "hrtc", "the server is gone", kThen),
+              "hrtc: the server is gone");
     EXPECT_EQ(log_text(kPlain, LogLevel::info, "hrtc", "touch: 50 %", kThen), "touch: 50 %");
 }
 

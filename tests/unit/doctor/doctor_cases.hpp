@@ -67,7 +67,7 @@ rt-throttling => @kernel/sched_rt_runtime_us=-2%%many => unknown
 rt-throttling => @kernel/sched_rt_runtime_us=950000 ;; @kernel/sched_rt_period_us=0%-5%x%
     => unknown => ...sched_rt_period_us...
 
-compaction => => good => locked memory stays where it is
+compaction => => good => the kernel does not move locked memory
 compaction => /proc/sys/vm/compact_unevictable_allowed=1\n%2 => advice
 compaction => /proc/sys/vm/compact_unevictable_allowed=%no => unknown
 
@@ -94,12 +94,12 @@ interrupts => -@irq/24/effective_affinity_list ;; @irq/24/smp_affinity_list=0-3\
     => 4 of 4 interrupts go to processor 3 (24 'disk', 25 'disk', 26 'disk', ...); new ones may
     => sudo systemctl disable --now irqbalance ;; !* ;; !* => good
 interrupts => @irq/24/effective_affinity_list=? ;; @irq/24/smp_affinity_list=
-    => unknown => ...of 1 the kernel does not tell
+    => unknown => ...; 1 with an unknown target
 interrupts => @irq/24/effective_affinity_list=? ;; @irq/24/smp_affinity_list=
     ;; @irq/default_smp_affinity=f\n => advice
 interrupts => cpu=none => advice => => hrtc doctor --cpu 3
 interrupts => cpu=0 ;; @cpu/online=0 ;; @irq/default_smp_affinity=1
-    => advice => => lscpu --online --extended # One is too few.
+    => advice => => lscpu --online --extended # One processor is too few.
 
 governor => @cpu/cpu0/cpufreq/scaling_governor=powersave\n => good
 governor => @cpu/cpu0/cpufreq/scaling_governor=powersave\n ;; cpu=none
@@ -112,7 +112,7 @@ governor => @cpu/cpu1/cpufreq/scaling_governor=schedutil\n
     => advice => => !* ;; ... => @cpu/cpu1/cpufreq/scaling_governor=performance\n ;; good
 governor => -@cpu/cpu0/cpufreq ;; -@cpu/cpu1/cpufreq ;; -@cpu/cpu2/cpufreq ;; -@cpu/cpu3/cpufreq
     ;; cpu=none => good
-    => processors 0-3 without a governor: the clock is fixed, or the hypervisor's
+    => processors 0-3 without a governor: the clock rate is fixed or set by the hypervisor
 governor => @cpu/cpu3/cpufreq/scaling_governor=
     %PERFORMANCE%performance now%\x1b[2J%averyveryverylongname => unknown
 
@@ -124,7 +124,7 @@ idle-states => @cpu/cpu2/cpuidle/state2/latency=200\n ;; @cpu/cpu2/cpuidle/state
     ;; @cpu/cpu2/cpuidle/state3/latency=200\n ;; @cpu/cpu2/cpuidle/state3/disable=0\n ;; cpu=none
     => advice => => !* ;; ... => @cpu/cpu2/cpuidle/state1/disable=0\n ;; good
 idle-states => @idle/state2/latency=890\n ;; /dev/cpu_dma_latency=\x0a\0\0\0 => good
-    => driver 'intel_idle', up to 890 us to wake, held to 10 us by /dev/cpu_dma_latency
+    => driver 'intel_idle', up to 890 us to wake, limited to 10 us by /dev/cpu_dma_latency
 idle-states => @idle/state2/latency=890\n
     ;; /dev/cpu_dma_latency=%0%\xff\xff\xff\xff%\0\0\0\0\0\0\0\0\0 => advice
 idle-states => @idle/state1/latency=%-1%deep%1 2
@@ -179,23 +179,24 @@ dds-interface => ~lo=0x8 down => critical => 'lo' is down => sudo ip link set de
 dds-interface => uri=<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="eth0"/>
     => good
 dds-interface => uri=<NetworkInterface name="eth0"/> ;; ~eth0=0x1003 down
-    => critical => 'eth0' is up without a link => ip link show dev 'eth0' # No carrier: the cable?
+    => critical => 'eth0' is up without a link
+    => ip link show dev 'eth0' # If NO-CARRIER is shown, check the cable.
 dds-interface => uri=<NetworkInterface name="eth0"/> ;; ~eth0=0x1002 down%0x1002 unknown
     => critical => 'eth0' is down
 dds-interface => uri=<NetworkInterface name="eth0"/> ;; ~eth0=many up
-    => unknown => 'eth0' does not tell its state
+    => unknown => 'eth0' has an unknown state
 dds-interface => uri=<NetworkInterface name="eth0"/> ;; -@net/eth0
-    => critical => 'eth0' is not there
+    => critical => 'eth0' does not exist
 dds-interface => ~eth0= up ;; uri=<NetworkInterface name='lo'/><NetworkInterface name='eth1'/>
     <NetworkInterface name='eth0'/>
-    => critical => 'lo' is up; 'eth1' is not there; 'eth0' does not tell its state => * ;; *
+    => critical => 'lo' is up; 'eth1' does not exist; 'eth0' has an unknown state => * ;; *
 dds-interface => uri=<CycloneDDS/> => good => no interface is named; 'eth0' is up
 dds-interface => uri=<CycloneDDS/> ;; ~eth0=0x1002 down
     => advice => => sudo ip link set dev 'eth0' up
 dds-interface => uri=<CycloneDDS/> ;; ~eth0=0x1002 down ;; ~lo=0x8 down
     => critical => no interface is up
 dds-interface => uri=<CycloneDDS/> ;; ~lo=0x8 down ;; -@net/eth0
-    => critical => => ip -brief link # None but the loopback is there. ;; ...
+    => critical => => ip -brief link # There is only the loopback. ;; ...
 dds-interface => uri=<NetworkInterface name="a'; reboot"/> ;; ~a'; reboot=0x1002 down
     => critical => => sudo ip link set dev 'a'\\''; reboot' up
 

@@ -82,7 +82,7 @@ TEST(Examine, says_of_a_machine_without_files_what_is_missing)
         for (const Finding& finding : findings)
         {
             EXPECT_TRUE(finding.verdict == Verdict::good ||
-                        finding.found.ends_with(" is not there"))
+                        finding.found.ends_with(" does not exist"))
                 << finding.found;
         }
     }

@@ -49,7 +49,7 @@ struct Example
         tool.stiffness_n_per_m = 60.0;
         tool.lag_m = 61.0;
         tool.object_way_m = 88.0;
-        tool.object_turn_rad = 89.0;
+        tool.object_rotation_rad = 89.0;
         tool.carried_m = Vec3(90.0, 91.0, 92.0);
         tool.carried_rad = Vec3(93.0, 94.0, 95.0);
         tool.in_contact = true;
@@ -159,13 +159,14 @@ TEST(FrameExport, tells_every_value_under_its_name)
         "traversals": 86, "refused_already_here": 87,
         "tools": [{
             "device_world_m": [0.5, -0.25, 2.0], "sample_time_ns": 77, "elapsed_periods": 3,
-            "hand_world_m": [31.0, 32.0, 33.0], "velocity_world_m_per_s": [34.0, 35.0, 36.0],
+            "clutched_device_world_m": [31.0, 32.0, 33.0],
+            "velocity_world_m_per_s": [34.0, 35.0, 36.0],
             "angular_velocity_world_rad_per_s": [37.0, 38.0, 39.0], "buttons": 40,
             "gripper_m": 41.0, "sent_force_world_n": [42.0, 43.0, 44.0],
             "sent_torque_world_nm": [45.0, 46.0, 47.0], "sent_gripper_n": 48.0,
             "force_world_n": [51.0, 52.0, 53.0], "torque_world_nm": [54.0, 55.0, 56.0],
             "proxy_world_m": [57.0, 58.0, 59.0], "stiffness_n_per_m": 60.0, "lag_m": 61.0,
-            "clear_m": null, "object_way_m": 88.0, "object_turn_rad": 89.0,
+            "clear_m": null, "object_way_m": 88.0, "object_rotation_rad": 89.0,
             "carried_world_m": [90.0, 91.0, 92.0], "carried_world_rad": [93.0, 94.0, 95.0],
             "in_contact": true, "data_limited": true, "halted": false,
             "faults": ["tool_stuck"]}],

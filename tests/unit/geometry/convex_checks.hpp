@@ -79,10 +79,10 @@ inline constexpr double kTouching = 1e-17;
 }
 
 /// Points within a radius of a segment, as a convex body: the segment of a sphere has no length.
-class RoundBody
+class RoundCore
 {
 public:
-    explicit RoundBody(const Capsule& capsule)
+    explicit RoundCore(const Capsule& capsule)
         : half_(0.5 * (capsule.core.to - capsule.core.from))
         , radius_(capsule.radius)
         , center_(0.5 * (capsule.core.to + capsule.core.from))
@@ -97,7 +97,7 @@ public:
 private:
     static Vec3 support(const void* context, const Vec3& direction) noexcept TACTUS_NONBLOCKING
     {
-        const auto& self = *static_cast<const RoundBody*>(context);
+        const auto& self = *static_cast<const RoundCore*>(context);
         const Vec3 end = direction.dot(self.half_) < 0.0 ? Vec3(-self.half_) : self.half_;
         return end + direction * self.radius_;
     }

@@ -74,7 +74,7 @@ TEST_P(ConvexShapeTest, sphere_and_capsule_are_as_far_as_their_kernels_say)
         const double radius = size * std::exp2(random.between(-10.0, 1.0));
         const Capsule capsule{{pair.first[0], random.one_in(2) ? pair.first[0] : pair.first[1]},
                               radius};
-        const RoundBody body(capsule);
+        const RoundCore body(capsule);
         const double length = local_length(body.body(), pair.second);
         Vec3 direction = random.one_in(2) ? Vec3(0, 0, 0) : random.in_cube(1.0);
 

@@ -169,7 +169,7 @@ TEST(ConvexContact, of_capsules_is_what_their_kernel_says)
         const double size = (pair.first[1] - pair.first[0]).norm();
         const Capsule capsule{{pair.first[0], pair.first[1]},
                               size * std::exp2(random.between(-10.0, 1.0))};
-        const RoundBody body(capsule);
+        const RoundCore body(capsule);
         const ClosestPoints kernel = closest_points(capsule, pair.second);
         tally.add(kernel.meet);
 

@@ -234,7 +234,7 @@ TEST(Gjk, ends_when_the_bounds_are_as_near_as_the_tolerance_says_and_not_much_la
     double widest = 0.0;
     for (int i = 0; i < 2'000; ++i)
     {
-        const RoundBody round({{random.in_cube(1.0), random.in_cube(1.0)}, 1.0});
+        const RoundCore round({{random.in_cube(1.0), random.in_cube(1.0)}, 1.0});
         const Vec3 outward = random.in_cube(1.0).normalized();
         const Vec3 far = outward * random.between(5.0, 30.0);
         const Triangle triangle{far + random.in_cube(2.0), far + random.in_cube(2.0),

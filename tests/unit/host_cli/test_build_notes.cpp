@@ -42,15 +42,14 @@ TEST(BuildNotes, of_a_usual_size_there_are_none)
 TEST(BuildNotes, of_another_size_name_every_unit_that_makes_it_usual)
 {
     EXPECT_EQ(notes_of(390.0),
-              Notes{"the model is 390 m across; if that is not its size, give --unit mm (0.39 m), "
-                    "cm (3.9 m) or in (9.9 m), --scale or --fit-diag"});
-    EXPECT_EQ(notes_of(3'000.0),
-              Notes{"the model is 3000 m across; if that is not its size, give --unit mm (3 m), "
-                    "--scale or --fit-diag"});
+              Notes{"the model is 390 m across; if this size is wrong, set --unit mm (0.39 m), cm "
+                    "(3.9 m) or in (9.9 m), --scale or --fit-diag"});
+    EXPECT_EQ(notes_of(3'000.0), Notes{"the model is 3000 m across; if this size is wrong, set "
+                                       "--unit mm (3 m), --scale or --fit-diag"});
     EXPECT_EQ(notes_of(0.0002, 0.001),
-              Notes{"the model is 0.0002 m across; if that is not its size, give --unit cm (0.002 "
-                    "m), in (0.0051 m) or m (0.2 m), --scale or --fit-diag"});
-    EXPECT_EQ(notes_of(1e6), Notes{"the model is 1e+06 m across; if that is not its size, give "
+              Notes{"the model is 0.0002 m across; if this size is wrong, set --unit cm (0.002 m), "
+                    "in (0.0051 m) or m (0.2 m), --scale or --fit-diag"});
+    EXPECT_EQ(notes_of(1e6), Notes{"the model is 1e+06 m across; if this size is wrong, set "
                                    "--unit, --scale or --fit-diag"});
     EXPECT_EQ(size_notes(shape("sphere"), {390.0, 1.0, {}}, true), Notes{});
 }
@@ -82,10 +81,9 @@ TEST(BuildNotes, are_none_of_a_terrain_that_is_as_large_as_terrains_are)
 TEST(BuildNotes, tell_of_a_model_far_from_its_origin)
 {
     const TriangleMesh mesh = shape("sphere");
-    EXPECT_EQ(
-        size_notes(mesh, {0.2, 1.0, {697.5, 7'533.0, 0.4}}, true),
-        Notes{"the model stands 7533 m from its origin, 37665 times its size; --center puts it "
-              "there"});
+    EXPECT_EQ(size_notes(mesh, {0.2, 1.0, {697.5, 7'533.0, 0.4}}, true),
+              Notes{"the model lies 7533 m from its origin, 37665 times its size; --center moves "
+                    "the model to the origin"});
     EXPECT_EQ(size_notes(mesh, {0.2, 1.0, {-7'533.2, 0.0, 0.0}}, true).size(), 1U);
     EXPECT_EQ(size_notes(mesh, {0.2, 1.0, {1.0, -1.0, 0.0}}, true), Notes{});
 }
@@ -118,7 +116,7 @@ TEST(BuildMemory, that_is_too_little_is_refused_with_the_least_that_works)
               "a.stl needs " + std::to_string(needed) + " MiB; --memory-mib allows 100");
     const auto beyond = check_memory("a.stl", std::uint64_t{1} << 40U, std::nullopt);
     ASSERT_TRUE(beyond);
-    EXPECT_NE(beyond->text.find("--memory-mib 1099511627776 builds it all the same"),
+    EXPECT_NE(beyond->text.find("set --memory-mib 1099511627776 to build with swapping"),
               std::string::npos);
 }
 

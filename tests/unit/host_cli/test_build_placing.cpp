@@ -113,9 +113,8 @@ TEST(BuildPlacing, refuses_what_would_be_beyond_what_objects_may_be)
     objects = {{"far", 1, {kUpright, {1'000.0, 0.0, 0.0}, 1.0}, {}}};
     const auto far = place_objects({.scale = 100.0}, kBoxes, objects, notes);
     ASSERT_TRUE(far);
-    EXPECT_EQ(
-        far->text,
-        "--scale: object 'far' would stand farther than 10000 m from the origin along an axis");
+    EXPECT_EQ(far->text,
+              "--scale: object 'far' would lie farther than 10000 m from the origin along an axis");
 }
 
 } // namespace

@@ -67,6 +67,7 @@ struct Form
         line.add_option("--load", loads, "Beside").separated_by(',');
         line.add_flag("--json", json, "As JSON");
         line.add_option_file("--config", "Options");
+        line.add_former_name("amount", "count");
         line.add_flag("--print", prints, "Show them").not_in_file();
         line.set_footer("The end.");
     }
@@ -172,9 +173,10 @@ TEST(CommandLine, shows_its_version_and_how_it_is_used)
     EXPECT_EQ(shown_by({"--version"}), "try 7\n");
     const std::string help = shown_by({"--help"});
     for (const char* part :
-         {"Tries options.\nUsage: try [OPTIONS] FILE\n", "-n,--count INT:-2 .. 9=3",
-          "--domain UINT:0 .. 232", "--share FLOAT:0 .. 1=0.5 ", "--unit TEXT:{mm,m} ",
-          "--motion TEXT:tap ", "--name TEXT ", "\nThe end.\n",
+         {"Tries options.\nUsage: try [OPTIONS] FILE\n", "-n,--count INT:-2 .. 9 ",
+          "How many [default: 3]\n", "--domain UINT:0 .. 232 ", "--share FLOAT:0 .. 1 ",
+          "How much [default: 0.5]\n", "--unit TEXT:{mm,m} ", "--motion TEXT:tap ", "--name TEXT ",
+          "\nThe end.\n",
           "\nWhere, as in  try in.ply --model a:\n  --model TEXT                To touch\n"})
     {
         EXPECT_NE(help.find(part), std::string::npos) << part << "\n" << help;
@@ -208,6 +210,10 @@ TEST(CommandLine, reads_a_file_of_options_behind_the_line)
     EXPECT_EQ(refusal_behind_the_path(), ":1: no option is called 'fast'; see --help\n");
     write("# Mine.\nshare = 1\n  cuont = 1\n");
     EXPECT_EQ(refusal_behind_the_path(), ":3: no option is called 'cuont'; 'count'?\n");
+    write("amount = 1\n");
+    EXPECT_EQ(refusal_behind_the_path(), ":1: 'amount' is an older version's name; 'count'?\n");
+    EXPECT_EQ(refusal_of({"f", "--amount=1"}),
+              "try: --amount: an older version's name; --count?\n");
     write("\n[loop]\ncount = 1\n");
     EXPECT_EQ(refusal_behind_the_path(), ":2: begins a section; there are none\n");
     write("share = 1\n count = x\n");

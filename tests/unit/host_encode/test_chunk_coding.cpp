@@ -254,7 +254,7 @@ RC_GTEST_PROP(RangeCoder, gives_back_bits_of_any_probability, (std::uint32_t see
         RC_ASSERT(decoder.code_bit(zero) == bits[i]);
         RC_ASSERT(decoder.code_raw(i % 9) == (i & ((1U << i % 9) - 1)));
     }
-    RC_ASSERT(!decoder.has_observed_energy());
+    RC_ASSERT(!decoder.has_bytes_left());
 }
 
 TEST(RangeCoder, an_empty_code_is_all_zeros)

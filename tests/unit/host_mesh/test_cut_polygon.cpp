@@ -394,10 +394,11 @@ TEST(PolygonSink, notes_only_what_is_wrong)
     };
     EXPECT_TRUE(notes_of("f 1 2 3 4\nf 1 2 3 4 1\nf 1 1 2 3 3 4\n").empty());
     EXPECT_EQ(notes_of("f 1 3 2 4\n"),
-              std::vector<std::string>{"1 polygon crosses itself or has no area; cut into a fan"});
-    EXPECT_EQ(
-        notes_of("f 1 3 2 4\nf 1 2 1 2\n"),
-        std::vector<std::string>{"2 polygons cross themselves or have no area; cut into fans"});
+              std::vector<std::string>{
+                  "1 polygon crosses itself or has no area; cut into a fan of triangles"});
+    EXPECT_EQ(notes_of("f 1 3 2 4\nf 1 2 1 2\n"),
+              std::vector<std::string>{
+                  "2 polygons cross themselves or have no area; cut into fans of triangles"});
 }
 
 } // namespace

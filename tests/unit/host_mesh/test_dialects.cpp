@@ -401,7 +401,7 @@ TEST(ForeignFiles, that_are_broken_are_refused_by_what_is_wrong)
             {"a.ply",
              ply + "property int v1\nproperty int v2\nproperty int v3\nend_header\n0 0 0\n1 0 0\n"
                    "0 1 0\n0 1 2\n",
-             "they have 'v1', 'v2', 'v3'"},
+             "their properties: 'v1', 'v2', 'v3'"},
             {"a.ply",
              ply +
                  "property list uchar int vertex_indices\nend_header\n0 0 0,5\n1 0 0\n0 1 0\n3 0 1 "

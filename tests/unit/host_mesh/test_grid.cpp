@@ -111,7 +111,7 @@ TEST(Grid, takes_more_bits_for_relief_that_it_would_drown)
                                 " bits a coordinate instead of 16, steps of "),
               0U)
         << sut.notes[0];
-    EXPECT_NE(sut.notes[0].find("its relief needs it"), std::string::npos) << sut.notes[0];
+    EXPECT_NE(sut.notes[0].find("for its fine relief"), std::string::npos) << sut.notes[0];
 }
 
 TEST(Grid, takes_more_bits_for_a_texture_the_larger_the_plate_it_lies_on)
@@ -170,7 +170,7 @@ TEST(Grid, takes_more_bits_for_edges_of_a_few_steps)
     const PreparedMesh sut = on_its_grid(board, {.adds_bits = true});
     EXPECT_GT(sut.position_bits, 16U);
     EXPECT_LT(sut.quantum_m, 35e-6 / 15);
-    EXPECT_NE(sut.notes[0].find("shorter edges need it"), std::string::npos) << sut.notes[0];
+    EXPECT_NE(sut.notes[0].find("for its short edges"), std::string::npos) << sut.notes[0];
 }
 
 TEST(Grid, takes_no_bits_for_what_has_no_relief)
@@ -214,7 +214,7 @@ TEST(Grid, is_as_fine_as_its_neighbours_want_it)
     EXPECT_EQ(sut.position_bits, 19U);
     const PreparedMesh finest = on_its_grid(plate, {.quantum_max_m = usual.quantum_m / 1e6});
     EXPECT_EQ(finest.position_bits, 24U);
-    EXPECT_NE(finest.notes[0].find(", and steps of "), std::string::npos) << finest.notes[0];
+    EXPECT_NE(finest.notes[0].find("; steps of "), std::string::npos) << finest.notes[0];
     const auto refused = prepare_mesh(plate, {.quantum_max_m = 0.0});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().text, "the largest step of the grid is 0 m; must be positive");
@@ -302,8 +302,9 @@ TEST(Grid, closes_a_seam_that_the_source_has_rounded_apart)
         EXPECT_EQ(sut.mesh.positions.size(), 17U * 41U) << off;
         EXPECT_EQ(sut.mesh.faces, whole.mesh.faces) << off;
         EXPECT_NEAR(sut.quantisation_m, apart.quantisation_m + std::abs(off), 1e-15) << off;
-        EXPECT_NE(std::ranges::find(sut.notes, "41 vertices of borders joined to one less than "
-                                               "half a step of the grid away"),
+        EXPECT_NE(std::ranges::find(
+                      sut.notes,
+                      "41 vertices of borders joined to others less than half a grid step away"),
                   sut.notes.end());
     }
     EXPECT_EQ(on_its_grid(make_seam(0.51 * whole.quantum_m), {.stitches = true}).joined_vertices,
@@ -475,7 +476,7 @@ TEST(Grid, is_refused_where_no_step_from_its_place_is_a_number)
     EXPECT_EQ(sut.origin_m[2] + sut.quantum_m * sut.mesh.positions[0][2], 0.0);
     const auto refused = prepare_mesh(at_height(1e300), centred);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().text, "coordinates are not finite any more after scaling by 1");
+    EXPECT_EQ(refused.error().text, "coordinates are no longer finite after scaling by 1");
 }
 
 } // namespace tactus::test

@@ -253,8 +253,8 @@ TEST(TurnClosedPieces, says_what_it_turned)
     const auto one = prepare_mesh(turned(cube(1, {0, 0, 0})), {});
     ASSERT_TRUE(one);
     EXPECT_EQ(one.value().notes,
-              std::vector<std::string>{"1 closed piece turned outwards that looked inwards; "
-                                       "--keep-winding leaves that"});
+              std::vector<std::string>{
+                  "1 closed piece turned from inwards to outwards; --keep-winding prevents this"});
 }
 
 TEST(TurnClosedPieces, knows_thin_tiny_and_distant_bodies)

@@ -97,7 +97,7 @@ TEST(GltfExtensions, that_leave_something_out_are_named_once_and_the_others_are_
 
 TEST(GltfExtensions, that_nothing_knows_are_named_wherever_they_stand)
 {
-    const std::string what = " is not known here; what it adds, moves or hides is not read";
+    const std::string what = " is unknown; its additions, motions and hidden nodes are not read";
     json scene = tetrahedron_scene();
     scene["extensionsUsed"] = {"ACME_part"};
     EXPECT_EQ(notes_of(scene), std::vector<std::string>{"extension 'ACME_part'" + what});
@@ -174,7 +174,7 @@ TEST(GltfExtensions, instances_obey_the_rules_of_nodes)
     const SceneFiles files(instance_bytes({1, 1, 1}));
     json scene = instanced_scene();
     scene["accessors"][4]["count"] = 2;
-    EXPECT_NE(files.refusal(scene.dump()).find("SCALE has 2 instances, another attribute 3"),
+    EXPECT_NE(files.refusal(scene.dump()).find("SCALE has 2 instances; another attribute has 3"),
               std::string::npos);
     scene = instanced_scene();
     scene["accessors"][3]["type"] = "VEC3";
@@ -185,7 +185,7 @@ TEST(GltfExtensions, instances_obey_the_rules_of_nodes)
     scene["accessors"][2]["count"] = 4'000'000'000U;
     auto& attributes = scene["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     attributes = {{"TRANSLATION", 2}};
-    EXPECT_NE(files.refusal(scene.dump()).find("are of 4000000000 instances; at most 4096"),
+    EXPECT_NE(files.refusal(scene.dump()).find("have 4000000000 instances; at most 4096"),
               std::string::npos);
     attributes = {{"_ID", 2}};
     EXPECT_EQ(files.open(scene).value().objects().size(), 1U);

@@ -87,7 +87,7 @@ TEST(GltfLeftOut, are_primitives_without_a_surface_beside_one_that_has_it)
         {"1 primitive of 0 corners", {{"attributes", {{"POSITION", 2}}}}},
         {"1 primitive of 0 corners", {{"attributes", {{"POSITION", 0}}}, {"indices", 2}}},
         {"1 primitive of 2 corners", {{"attributes", {{"POSITION", 0}}}, {"indices", 3}}},
-        {"1 primitive of an extension's own mode",
+        {"1 primitive in a mode of an extension",
          {{"attributes", {{"_DENSITY", 0}}},
           {"mode", 2'147'483'647},
           {"extensions", {{"EXT_primitive_voxels", json::object()}}}}}};
@@ -175,7 +175,7 @@ TEST(GltfLeftOut, are_hidden_nodes_and_all_below_them_unless_they_are_to_be_touc
     EXPECT_EQ(found_in(scene).names, (Names{"thing", "gone"}));
     scene["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = false;
     scene["scenes"][0]["nodes"] = {2};
-    EXPECT_NE(SceneFiles().refusal(scene.dump()).find("nothing is left to touch: node 'gone'"),
+    EXPECT_NE(SceneFiles().refusal(scene.dump()).find("no object is left to touch: node 'gone'"),
               std::string::npos);
 }
 
@@ -220,7 +220,7 @@ TEST(GltfLeftOut, are_bytes_behind_a_glb)
     const SceneFiles files;
     const auto opened = files.open(whole + std::string("\r\n\0", 3));
     ASSERT_TRUE(opened) << opened.error().text;
-    EXPECT_EQ(opened.value().notes(), Names{"3 bytes behind the end of the GLB left out"});
+    EXPECT_EQ(opened.value().notes(), Names{"3 bytes after the end of the GLB left out"});
 }
 
 TEST(GltfLeftOut, are_no_files_whose_names_a_program_wrote_as_they_are)

@@ -235,7 +235,7 @@ std::vector<Sample> samples()
         {"indices_beyond", "IndexOutOfRange/AllIndicesOutOfRange.gltf", "65535; there are 24"},
         {"missing_bin", "MissingBin/BoxTextured.gltf", "'BoxTextured0.bin': no such file"},
         {"recursive", "RecursiveNodes/RecursiveNodes.gltf", "is its own ancestor"},
-        {"wrong_type", "SchemaFailures/sceneWrongType.gltf", "scene names none"},
+        {"wrong_type", "SchemaFailures/sceneWrongType.gltf", "scene must be a whole number"},
         {"no_scene", "TestNoRootNode/NoScene.gltf", "has no scene"},
         {"scene_without_nodes", "TestNoRootNode/SceneWithoutNodes.gltf", "no node with a mesh"},
         {"draco", "draco/2CylinderEngine.gltf", "compressed with KHR_draco_mesh_compression"},

@@ -71,9 +71,9 @@ TEST(PlacedModels, need_their_models_named)
     const auto sut = read_placed_models(path);
     ASSERT_FALSE(sut);
     EXPECT_EQ(sut.error().text, path.string() +
-                                    ": node 'thing' (nodes[0]) names no model in "
-                                    "extras.tactus; spm_build " +
-                                    path.string() + " -o FOLDER makes models of a scene's meshes");
+                                    ": node 'thing' (nodes[0]) names no model in extras.tactus; "
+                                    "build models from the scene's meshes with: spm_build " +
+                                    path.string() + " -o FOLDER");
 }
 
 } // namespace

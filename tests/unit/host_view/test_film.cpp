@@ -141,7 +141,7 @@ TEST(Films, tell_where_two_recordings_first_differ_and_how)
     EXPECT_TRUE(compare("same.rec").differences().empty());
     const Films sut = compare("other.rec");
     ASSERT_FALSE(sut.differences().empty());
-    EXPECT_EQ(sut.differences().front().what, "the hands");
+    EXPECT_EQ(sut.differences().front().what, "the device poses");
     EXPECT_EQ(sut.differences().front().frame, 90U);
     EXPECT_NE(sut.differences().front().how.find("in 60 of 150 frames, by 1 mm at first"),
               std::string::npos)
@@ -173,7 +173,8 @@ TEST(Film, shows_a_recording_that_was_cut_as_far_as_it_goes_and_ends_when_it_is_
     const auto cut = Film::develop(path.string(), 1, shelf, {});
     ASSERT_TRUE(cut.has_value());
     EXPECT_EQ(cut.value()->frames(), 20U);
-    EXPECT_NE(cut.value()->note().find("the file was cut: behind frame 19"), std::string::npos);
+    EXPECT_NE(cut.value()->note().find("the file is incomplete: after frame 19"),
+              std::string::npos);
     std::filesystem::resize_file(path, 30);
     const auto refused = Film::develop(path.string(), 1, shelf, {});
     ASSERT_FALSE(refused.has_value());

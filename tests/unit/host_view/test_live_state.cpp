@@ -111,11 +111,11 @@ TEST(StateJson, says_what_it_waits_for)
         return nlohmann::json::parse(state_json(*live.newest(), *shelf, chosen, 7))["waits_for"]
             .get<std::string>();
     };
-    EXPECT_EQ(waits(), "a controller on DDS domain 7: 'hrtc --model NAME --domain 7', or "
-                       "'hrtc FILE --domain 7', which without --domain shows itself to no viewer");
+    EXPECT_EQ(waits(), "a controller on DDS domain 7: start 'hrtc --model NAME --domain 7' or "
+                       "'hrtc FILE --domain 7' (with FILE, viewers need --domain)");
     live.publish({told(1, "one")}, {});
     EXPECT_NE(waits().find("--no-refinement-state"), std::string::npos);
-    EXPECT_NE(waits("01").find("gone"), std::string::npos);
+    EXPECT_NE(waits("01").find("disconnected"), std::string::npos);
     dds::SeenFront seen = front(1, 1);
     live.publish({told(1, "one")}, {seen});
     EXPECT_EQ(waits(), "");
@@ -148,7 +148,7 @@ TEST(StateJson, shows_the_chosen_controller_and_lists_all)
     EXPECT_EQ(state["controller"]["front"]["regions"],
               nlohmann::json::parse(R"([{"model": "abababababababababababababababab",
                   "is_predicted": true, "center_m": [0.5, 1.0, 2.0], "radius_m": 0.25}])"));
-    EXPECT_EQ(state["controller"]["tools"][0]["words"], "on: no contact, so none is due");
+    EXPECT_EQ(state["controller"]["tools"][0]["words"], "on: no contact, so the force is zero");
     EXPECT_TRUE(state["controller"]["pairs"][0]["upper_m"].is_null());
 }
 
@@ -157,28 +157,29 @@ TEST(ForceWords, name_every_cause_and_what_brings_the_force_back)
     ToolTelemetry tool;
     tool.in_contact = true;
     EXPECT_EQ(force_words({SafetyState::force, ForceOff::none, "", 0.0}, tool, {}), "on");
-    const std::string inside = "the tool began inside a closed object, which holds it from within";
+    const std::string inside =
+        "the tool began inside a closed object, whose surface keeps it inside";
     const RefinementStateTool began{SafetyState::force, ForceOff::none, "", 0.0, true};
     EXPECT_EQ(force_words(began, tool, {}), "on: " + inside);
-    EXPECT_EQ(force_words(began, {}, {}), "on: no contact, so none is due; " + inside);
+    EXPECT_EQ(force_words(began, {}, {}), "on: no contact, so the force is zero; " + inside);
     std::vector<std::string> all;
     for (std::size_t cause = 0; cause < kForceOffs; ++cause)
     {
         const auto one = static_cast<ForceOff>(1U << cause);
         const std::string words = force_words({SafetyState::brake, one, "", 0.0}, tool, {});
         EXPECT_TRUE(words.starts_with("off: ")) << words;
-        EXPECT_NE(words.find("; comes back "), std::string::npos) << words;
+        EXPECT_NE(words.find("; returns "), std::string::npos) << words;
         EXPECT_EQ(std::ranges::count(all, words), 0) << words;
         all.push_back(words);
     }
     ModelTelemetry gone;
-    gone.host_gone = true;
+    gone.server_gone = true;
     gone.pose_age_ns = 600'000'000;
     const std::vector models{gone};
-    EXPECT_EQ(
-        force_words({SafetyState::brake, ForceOff::host | ForceOff::stall, "", 0.0}, tool, models),
-        "off: frames were missed; comes back when they are in time again. Also: the host is "
-        "silent for 0.6 s; comes back when the model is served again");
+    EXPECT_EQ(force_words({SafetyState::brake, ForceOff::server | ForceOff::stall, "", 0.0}, tool,
+                          models),
+              "off: frames were missed; returns when frames are in time again. Also: the server "
+              "has been silent for 0.6 s; returns when the model is served again");
 }
 
 TEST(Metrics, are_text_that_prometheus_reads)

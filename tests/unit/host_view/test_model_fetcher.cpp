@@ -8,7 +8,7 @@
 #include "tests/unit/transport/stranger.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/content_hash.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 
 #include <gtest/gtest.h>
 
@@ -98,7 +98,7 @@ protected:
     std::unique_ptr<ModelShelf> shelf_;
     std::unique_ptr<ModelFetcher> sut_;
     std::unique_ptr<Stranger> stranger_;
-    std::unique_ptr<dds::DdsHost> host_;
+    std::unique_ptr<dds::DdsServer> host_;
 };
 
 TEST_F(ModelFetcherTest, takes_no_forged_piece_and_the_true_ones_from_who_comes_next)
@@ -128,7 +128,7 @@ TEST_F(ModelFetcherTest, takes_no_forged_piece_and_the_true_ones_from_who_comes_
     stranger_.reset();
     std::vector<dds::PublishedModel> models;
     models.push_back({"tiny", ModelStore::open(folder_.write("tiny.spm", model_.file)).value()});
-    host_ = std::move(dds::DdsHost::create(2, std::move(models), {})).value();
+    host_ = std::move(dds::DdsServer::create(2, std::move(models), {})).value();
     ASSERT_TRUE(stepped_until([&] { return lines_.has("is served again"); })) << lines_.text();
     for (std::uint32_t chunk = 0; chunk < model_.chunks.size(); ++chunk)
     {
@@ -139,7 +139,7 @@ TEST_F(ModelFetcherTest, takes_no_forged_piece_and_the_true_ones_from_who_comes_
     }
 }
 
-TEST_F(ModelFetcherTest, asks_a_host_no_more_whose_header_or_base_mesh_is_forged)
+TEST_F(ModelFetcherTest, asks_a_server_no_more_whose_header_or_base_mesh_is_forged)
 {
     for (const ContentKind kind : {ContentKind::header, ContentKind::base})
     {

@@ -171,7 +171,7 @@ public:
         parts.timer = options_.timer != nullptr ? options_.timer : &timer_;
         parts.clock = &clock();
         parts.frames = options_.frames;
-        parts.hosts_gone = &hosts_gone;
+        parts.servers_gone = &servers_gone;
         parts.starved = &starved;
         mailbox_.emplace(std::vector{placed()}, 1, kPoseAge, options_.object_speed_m_per_s);
         parts.scene_mailbox = options_.has_mailbox ? &*mailbox_ : nullptr;
@@ -252,7 +252,7 @@ public:
         return most;
     }
 
-    ModelMarks hosts_gone;
+    ModelMarks servers_gone;
     ModelMarks starved;
     TelemetryTap telemetry{kPeriod};
 

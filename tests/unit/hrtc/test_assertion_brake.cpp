@@ -454,7 +454,7 @@ TEST(AssertionBrake, a_recorded_frame_that_failed_fails_again_in_its_replay)
     const Ended ended = run_in_child({.bug = Bug::frame, .record_path = path});
     EXPECT_EQ(ended.code, kExitCode);
     EXPECT_TRUE(ended.text.starts_with(kFrameLine)) << ended.text;
-    EXPECT_NE(ended.text.find("\nhrtc: 'hrtc --replay " + path + "' runs it again\n"),
+    EXPECT_NE(ended.text.find("\nhrtc: 'hrtc --replay " + path + "' repeats the failure\n"),
               std::string::npos)
         << ended.text;
 
@@ -465,7 +465,7 @@ TEST(AssertionBrake, a_recorded_frame_that_failed_fails_again_in_its_replay)
     ASSERT_TRUE(sound);
     ASSERT_TRUE(sound.value().difference);
     EXPECT_EQ(sound.value().difference->frame, recording.frame_count() - 1);
-    EXPECT_EQ(sound.value().difference->text, "it failed in the run, not here");
+    EXPECT_EQ(sound.value().difference->text, "it failed in the run, but not in the replay");
     EXPECT_FALSE(replay(recording, &failing_kernels(), {.runs_failed = false}).value().difference);
     const auto fail_again = [&]
     {
@@ -475,7 +475,7 @@ TEST(AssertionBrake, a_recorded_frame_that_failed_fails_again_in_its_replay)
                                { std::fprintf(stderr, "%s\n", line.c_str()); }));
     };
     EXPECT_EXIT(fail_again(), testing::ExitedWithCode(kExitCode),
-                "failed_frame.rec: frame [0-9]+ failed in the run and runs now\nhrtc: internal "
+                "failed_frame.rec: frame [0-9]+, which failed in the run, runs now\nhrtc: internal "
                 "error: is_far_from_surfaces \\(.*\n$");
 }
 

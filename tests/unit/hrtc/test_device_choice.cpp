@@ -92,7 +92,7 @@ TEST(DeviceLimitsText, has_a_key_for_each_number)
 TEST(DeviceLimitsText, changes_nothing_when_it_refuses)
 {
     for (const auto& [text, fault] :
-         {std::pair("", "is not KEY=VALUE with one of mass_kg, "),
+         {std::pair("", "is not KEY=VALUE; the keys are mass_kg, "),
           std::pair("mass_kg", "'mass_kg' is not KEY=VALUE"),
           std::pair("friction_n=1,", "'' is not KEY=VALUE"),
           std::pair("friction_n=1,mass=2", "'mass=2' is not KEY=VALUE"),

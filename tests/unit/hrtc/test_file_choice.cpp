@@ -81,13 +81,12 @@ TEST(FileChoice, takes_files_without_an_option_as_models_or_the_scene)
 
 TEST(FileChoice, refuses_a_mixture_unless_it_is_told_where_from)
 {
-    EXPECT_EQ(
-        take({.files = {"a.spm"}, .models = {"cow"}}).fault,
-        "--model: 'a.spm' is a file and 'cow' a published name; all come from files ('cow' as "
-        "'cow.spm') or by their names");
+    EXPECT_EQ(take({.files = {"a.spm"}, .models = {"cow"}}).fault,
+              "--model: 'a.spm' is a file and 'cow' a published name; give all as files ('cow' as "
+              "'cow.spm') or all as names");
     EXPECT_EQ(take({.models = {"cow"}, .tools = {"sphere:0.01", "mesh:e.spm"}}).fault,
-              "--tool of tool 1: 'e.spm' is a file and 'cow' a published name; all come from files "
-              "('cow' as 'cow.spm') or by their names");
+              "--tool of tool 1: 'e.spm' is a file and 'cow' a published name; give all as files "
+              "('cow' as 'cow.spm') or all as names");
     const Taken told = take({.models = {"a.spm", "cow"}, .transport = "dds"});
     EXPECT_EQ(told.fault, "");
     EXPECT_EQ(told.transport, "dds");
@@ -96,19 +95,19 @@ TEST(FileChoice, refuses_a_mixture_unless_it_is_told_where_from)
 TEST(FileChoice, says_what_to_do_with_a_mesh_and_with_what_is_no_file)
 {
     EXPECT_EQ(take({.files = {"cow.obj"}}).fault,
-              "--model: 'cow.obj' is a mesh; spm_build cow.obj -o MODEL.spm makes a model of it");
+              "--model: 'cow.obj' is a mesh; build a model with: spm_build cow.obj -o MODEL.spm");
     EXPECT_EQ(take({.models = {"cow"}, .tools = {"mesh:cow.ply,0.01"}}).fault,
-              "--tool: 'cow.ply' is a mesh; spm_build cow.ply -o MODEL.spm makes a model of it");
+              "--tool: 'cow.ply' is a mesh; build a model with: spm_build cow.ply -o MODEL.spm");
     EXPECT_EQ(take({.files = {"touch"}}).fault,
-              "'touch' is no command (doctor, deadline-test, load) and no model's or scene's file "
-              "(.spm, .gltf, .glb); a published model is --model NAME");
+              "'touch' is neither a command (doctor, deadline-test, load) nor a file of a model or "
+              "scene (.spm, .gltf, .glb); use --model NAME for a published model");
     const std::string hash(32, '0');
     EXPECT_EQ(take({.models = {"cow.spm@" + hash}, .transport = "file"}).fault,
               "--model: 'cow.spm@" + hash +
-                  "': a hash is of published models; a file is given without");
+                  "': only published models take a hash; give a file without a hash");
     EXPECT_EQ(take({.models = {"cow.spm@" + hash}}).transport, "dds");
     EXPECT_EQ(take({.files = {"a.glb", "b.glb"}}).fault,
-              "'b.glb': a second scene; one can be touched");
+              "'b.glb' is a second scene; only one scene is possible");
 }
 
 } // namespace

@@ -17,12 +17,12 @@ namespace
 {
 
 /// Hand that keeps its last sense, and moves 1 mm along x each time.
-struct StraightHand final : public OperatorMotion
+struct StraightOperator final : public OperatorMotion
 {
     OperatorSense* sensed;
     int frames{0};
 
-    explicit StraightHand(OperatorSense& into) : sensed(&into) {}
+    explicit StraightOperator(OperatorSense& into) : sensed(&into) {}
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return {1.0, 0.0, 0.0}; }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
     {
@@ -49,8 +49,8 @@ struct Rig
     {
         start.translation_m = {0.0, 0.0, 1.0};
         tell(SceneChangeKind::object_comes, start);
-        hand = std::make_unique<FollowingOperator>(std::make_unique<StraightHand>(sensed), objects,
-                                                   0, start, 0.1);
+        hand = std::make_unique<FollowingOperator>(std::make_unique<StraightOperator>(sensed),
+                                                   objects, 0, start, 0.1);
     }
     void tell(SceneChangeKind kind, const Similarity& place)
     {

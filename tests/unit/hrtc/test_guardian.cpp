@@ -151,11 +151,11 @@ TEST_F(GuardianTest, is_refused_when_a_guard_refuses_and_none_where_there_is_no_
                         80, true);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().text,
-              "a guardian can't start: left.so: has no second line to its motors");
+              "the guardian can't start: left.so: has no second line to its motors");
     const auto died =
         Guardian::start([]() -> Result<Guardian::Guards, Refusal> { ::_exit(1); }, 80, true);
     ASSERT_FALSE(died);
-    EXPECT_EQ(died.error().text, "a guardian can't start: it ended before it was ready");
+    EXPECT_EQ(died.error().text, "the guardian can't start: its process ended before it was ready");
     const auto none = Guardian::start(
         []() -> Result<Guardian::Guards, Refusal> { return Guardian::Guards{}; }, 80, true);
     ASSERT_TRUE(none);

@@ -346,21 +346,21 @@ TEST(HapticLoop, fades_the_force_before_it_stops)
     EXPECT_LE(rig.largest_step_n(kSettled, frames - 1), 8.0 * kPeriod_s / kFadeTime_s);
 }
 
-TEST(HapticLoop, a_lost_host_ends_the_force_unless_the_model_is_here_as_a_whole)
+TEST(HapticLoop, a_lost_server_ends_the_force_unless_the_model_is_here_as_a_whole)
 {
     for (const bool is_static : {false, true})
     {
         LoopRigOptions options;
         options.static_model = is_static;
         options.meanwhile = [](LoopRig& rig, std::uint64_t frame)
-        { rig.hosts_gone.set(0, is_bad(frame)); };
+        { rig.servers_gone.set(0, is_bad(frame)); };
         LoopRig rig(options);
         rig.run();
         const double before_n = rig.written_n(kSettled - 1).norm();
         const double after_n = rig.written_n(kSettled + kFadeFrames).norm();
         EXPECT_GT(before_n, 1.0);
         EXPECT_EQ(after_n == 0.0, !is_static);
-        EXPECT_EQ(std::ranges::count(rig.events(), ForceOff::host, &SafetyEvent::causes) > 0,
+        EXPECT_EQ(std::ranges::count(rig.events(), ForceOff::server, &SafetyEvent::causes) > 0,
                   !is_static);
         EXPECT_LE(rig.largest_step_n(kSettled, 1'900), 8.0 * kPeriod_s / kFadeTime_s);
         EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
@@ -492,9 +492,9 @@ TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_b
         options.stiffness_n_per_m = stiffness_n_per_m;
         return options;
     };
-    const double cap_n_per_m = 0.9 * 2.0 * 1.0 / kPeriod_s; // The device's damping is 1 N s/m.
+    const double limit_n_per_m = 0.9 * 2.0 * 1.0 / kPeriod_s; // The device's damping is 1 N s/m.
     LoopRig stiff(pressed_with(3'000.0));
-    LoopRig softer(pressed_with(cap_n_per_m * (1.0 - 1e-9)));
+    LoopRig softer(pressed_with(limit_n_per_m * (1.0 - 1e-9)));
     stiff.run();
     softer.run();
     for (const std::uint64_t frame : {kSettled, kSettled + 500})

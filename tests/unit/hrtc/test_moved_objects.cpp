@@ -353,7 +353,7 @@ TEST(MovedObject, that_leaps_over_a_hand_is_felt_step_by_step_whatever_is_believ
     }
 }
 
-TEST(MovedObject, of_an_honest_host_is_felt_as_if_all_were_believed)
+TEST(MovedObject, of_an_honest_server_is_felt_as_if_all_were_believed)
 {
     const auto shift = [](std::uint64_t frame) { return swing(frame, 0.02); }; // 0.16 m/s.
     MovedObject limited(shift);

@@ -46,7 +46,7 @@ TEST(ObjectPose, a_quaternion_becomes_the_rotation_that_it_is_and_stays_orthonor
     }
 }
 
-TEST(ObjectPose, from_a_host_is_where_place_would_put_the_object)
+TEST(ObjectPose, from_a_server_is_where_place_would_put_the_object)
 {
     const tactus::test::TestModel& model = tactus::test::small_model(0);
     const tactus::test::FrameRig rig(model, tactus::test::with_room_for_all());

@@ -78,7 +78,8 @@ TEST_F(HrtcOptions, are_refused_in_one_line)
     EXPECT_EQ(refusal_of(parse, words_of("hrtc ball.spm" + faults)),
               "hrtc: --device-fault: at most 64 faults\n");
     // The rest depends on the processor.
-    const std::string kernels = "hrtc: --kernels: 'sse' is none that this processor runs: portable";
+    const std::string kernels =
+        "hrtc: --kernels: 'sse' is not one of the kernels for this processor: portable";
     EXPECT_TRUE(refusal_of(parse, words_of("hrtc ball.spm --kernels sse")).starts_with(kernels));
 }
 
@@ -148,7 +149,7 @@ TEST_F(HrtcOptions, of_a_run_from_files_with_a_domain_show_it_to_viewers_but_not
     testing::internal::CaptureStderr();
     EXPECT_FALSE(is_watched("hrtc ball.spm --domain 3 --virtual-time"));
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
-              "note: --domain has no use in virtual time\n");
+              "note: --domain has no effect with --virtual-time\n");
 }
 
 /// What tells one tool from another.
@@ -163,7 +164,8 @@ std::string told(const Options& options)
              << (tool.fixture ? tool.fixture->words : "-") << ' '
              << kDevices[static_cast<std::size_t>(tool.device.kind)] << ' '
              << tool.device.limits.mass_kg << ' ' << tool.device.frame.translation_m[0] << ' '
-             << kHands[static_cast<std::size_t>(tool.hand.motion)] << tool.hand.object << "; ";
+             << kHands[static_cast<std::size_t>(tool.simulated.motion)] << tool.simulated.object
+             << "; ";
     }
     return text.str();
 }

@@ -42,7 +42,7 @@ Json report_of(const std::string& model)
         "pools": {"pages": {"used_max": 43, "capacity": 47},
                   "faces": {"used_max": 53, "capacity": 59}, "total_bytes": 2097169},
         "cache": {"prediction": "auto", "loads": 61, "evictions": 67},
-        "wire": {"bytes_received": 71000, "host_lost": false,
+        "wire": {"bytes_received": 71000, "server_lost": false,
                  "arrival_ms": {"p50": 1.5, "p99": 2.5, "max": 3.5}},
         "servers": {"pinned": 1, "lost": 0, "back": 0, "replaced": 0, "not_followed": 0,
                     "namesake": 0, "events": []},
@@ -231,7 +231,7 @@ TEST(ReportPage, marks_faults_where_they_were)
         EXPECT_EQ(marks[0], Json::parse(R"({"name": "overrun", "kind": "fault", "x": [0.002]})"));
         EXPECT_EQ(marks[1],
                   Json::parse(R"({"name": "latency miss", "kind": "warning", "x": [0.005]})"));
-        EXPECT_EQ(marks[2], Json::parse(R"({"name": "force withheld for stall", "kind": "plain",
+        EXPECT_EQ(marks[2], Json::parse(R"({"name": "force off, causes: stall", "kind": "plain",
                                             "x": [0.003]})"));
     }
     EXPECT_EQ(charts[2]["lines"].back()["y"], Json({10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0}));
@@ -259,25 +259,24 @@ TEST(ReportPage, says_what_went_wrong)
         const std::string wanted = "<p class=\"verdict " + kind + "\">" + words + "</p>";
         return make_page(report, statistics_of(1), library()).find(wanted) != std::string::npos;
     };
-    EXPECT_TRUE(verdict("good", "No deadline missed by an overrun of the loop, 79 by the "
-                                "machine; no answer is only bounded."));
+    EXPECT_TRUE(verdict("good", "No overruns of the loop, 79 latency misses; no bounded answers."));
     report["answers"]["bounded"] = 7; // Proven bounds are no fault.
-    EXPECT_TRUE(verdict("good", "No deadline missed by an overrun of the loop, 79 by the "
-                                "machine; 7 answers are bounded."));
+    EXPECT_TRUE(verdict("good", "No overruns of the loop, 79 latency misses; 7 bounded answers."));
     report["deadline"]["overrun"] = 2;
     report["answers"]["stale"] = 5;
-    report["wire"]["host_lost"] = true;
+    report["wire"]["server_lost"] = true;
     report["safety"]["begun"]["stall"] = 3;
     report["safety"]["supervisor_brakes"] = 1;
-    EXPECT_TRUE(verdict("bad", "mesh and scene: the host went away; 5 frames with a stale answer | "
-                               "controller: 2 deadlines missed by an overrun of the loop; force "
-                               "off for: stall 3; 1 brake by the supervisor | machine: ok."));
+    EXPECT_TRUE(verdict("bad",
+                        "mesh and scene: the server was lost; 5 frames with a stale answer | "
+                        "controller: 2 deadlines missed by an overrun of the loop; force off, "
+                        "causes: stall 3; 1 brake by the supervisor | machine: ok."));
     report["deadline"]["overrun"] = 0;
     report["answers"]["stale"] = 0;
-    report["wire"]["host_lost"] = false;
-    EXPECT_TRUE(verdict("good", "mesh and scene: ok | controller: ok | machine: it woke the loop "
+    report["wire"]["server_lost"] = false;
+    EXPECT_TRUE(verdict("good", "mesh and scene: ok | controller: ok | machine: the loop was woken "
                                 "late, and the force faded for a moment 3 times (1 brake by the "
-                                "supervisor): &#39;hrtc doctor&#39; says why."));
+                                "supervisor): &#39;hrtc doctor&#39; lists the causes."));
 }
 
 TEST(ReportPage, leaves_out_lists_with_nothing_in_them)
@@ -286,7 +285,7 @@ TEST(ReportPage, leaves_out_lists_with_nothing_in_them)
     report["deadline"]["noted"] = Json::array();
     report["safety"]["events"] = Json::array();
     const std::string page = make_page(report, statistics_of(0), library());
-    EXPECT_FALSE(has_text(page, "Cycles of note"));
+    EXPECT_FALSE(has_text(page, "Noted cycles"));
     EXPECT_FALSE(has_text(page, "Safety events"));
 }
 

@@ -45,8 +45,8 @@ TEST(SafetyRecord, counts_a_cause_when_it_begins_to_hold_for_a_tool)
 {
     SafetyRecord sut(2);
     sut.add(event(1, 0, ForceOff::stall));
-    sut.add(event(2, 0, ForceOff::stall | ForceOff::host)); // The stall continues.
-    sut.add(event(3, 1, ForceOff::host));
+    sut.add(event(2, 0, ForceOff::stall | ForceOff::server)); // The stall continues.
+    sut.add(event(3, 1, ForceOff::server));
     sut.add(event(4, 0, ForceOff::none));
     sut.add(event(5, 0, ForceOff::stall));
     SafetyEvent by_supervisor = event(6, 0, ForceOff::watchdog);
@@ -59,7 +59,7 @@ TEST(SafetyRecord, counts_a_cause_when_it_begins_to_hold_for_a_tool)
             .begun()[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(cause)))];
     };
     EXPECT_EQ(begun(ForceOff::stall), 2U);
-    EXPECT_EQ(begun(ForceOff::host), 2U);
+    EXPECT_EQ(begun(ForceOff::server), 2U);
     EXPECT_EQ(begun(ForceOff::watchdog), 0U);
     EXPECT_EQ(sut.brakes(), 1U);
     EXPECT_EQ(sut.events().size(), 6U);

@@ -6,7 +6,7 @@
 #include "tests/shared/test_model.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
 #include "transport/dds/dds_client.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
@@ -38,8 +38,8 @@ constexpr Duration kAgeLimit = milliseconds(100);
 class SceneKeeperRig : public ::testing::Test
 {
 protected:
-    static constexpr std::uint32_t kHostDomain = 1;
-    static constexpr std::uint32_t kOtherHostDomain = 2;
+    static constexpr std::uint32_t kServerDomain = 1;
+    static constexpr std::uint32_t kOtherServerDomain = 2;
     static constexpr std::uint32_t kClientDomain = 3;
 
     void SetUp() override
@@ -49,23 +49,23 @@ protected:
         {
             files_.push_back(small_model(i).path);
         }
-        host = make_host(kHostDomain);
+        server = make_server(kServerDomain);
         client_ = std::move(dds::DdsClient::create(kClientDomain, "keeper", {})).value();
         reader_ = std::make_unique<dds::SceneReader>(client_->domain(), client_->exchange());
     }
     void TearDown() override { keeper.reset(); } // The keeper ends before its sources.
-    [[nodiscard]] std::unique_ptr<dds::DdsHost> make_host(std::uint32_t domain)
+    [[nodiscard]] std::unique_ptr<dds::DdsServer> make_server(std::uint32_t domain)
     {
         std::vector<dds::PublishedModel> models;
         for (std::size_t i = 0; i < files_.size(); ++i)
         {
             models.push_back({"m" + std::to_string(i), ModelStore::open(files_[i]).value()});
         }
-        auto made = dds::DdsHost::create(domain, std::move(models), {}, "workshop");
+        auto made = dds::DdsServer::create(domain, std::move(models), {}, "workshop");
         EXPECT_TRUE(made) << made.error().text;
         return std::move(made).value();
     }
-    std::uint32_t show(dds::DdsHost& shower, const std::string& name, double x_m,
+    std::uint32_t show(dds::DdsServer& shower, const std::string& name, double x_m,
                        std::size_t model = 0)
     {
         ShownObject object{name, shower.models()[model].store().hash(), {}, {}};
@@ -88,7 +88,7 @@ protected:
             auto shown = take_shown_scene(options, *client_, *reader_,
                                           [&]
                                           {
-                                              host->step();
+                                              server->step();
                                               return true;
                                           });
             ASSERT_TRUE(shown) << shown.error().text;
@@ -134,22 +134,22 @@ protected:
         ASSERT_TRUE(eventually(
             [&]
             {
-                host->step();
+                server->step();
                 client_->exchange().step();
-                return catalogue.offers_of(host->epoch()).size() == 2;
+                return catalogue.offers_of(server->epoch()).size() == 2;
             }));
         for (dds::Authority& authority : authorities)
         {
-            authority.pin(host->epoch());
+            authority.pin(server->epoch());
         }
     }
-    bool step_until(const std::function<bool()>& is_so, dds::DdsHost* other = nullptr)
+    bool step_until(const std::function<bool()>& is_so, dds::DdsServer* other = nullptr)
     {
         return eventually(
             [&]
             {
                 now_.ns += 1'000'000;
-                for (dds::DdsHost* each : {host.get(), other})
+                for (dds::DdsServer* each : {server.get(), other})
                 {
                     each != nullptr ? each->step() : void();
                 }
@@ -168,7 +168,7 @@ protected:
             });
     }
     /// Object of the server at one of our places, if any.
-    [[nodiscard]] std::optional<HostObject> shown_as(std::uint32_t place) const
+    [[nodiscard]] std::optional<ServerObject> shown_as(std::uint32_t place) const
     {
         return keeper->shown_as(place);
     }
@@ -179,7 +179,7 @@ protected:
     [[nodiscard]] const ToolSetup& tool() { return controller_->tools().front(); }
 
     tactus::test::Lines lines;
-    std::unique_ptr<dds::DdsHost> host;
+    std::unique_ptr<dds::DdsServer> server;
     Failover failover;
     std::vector<dds::Authority> authorities;
     std::optional<SceneKeeper> keeper;
@@ -203,21 +203,21 @@ class FollowedScene : public SceneKeeperRig
 
 TEST_F(FollowedScene, comes_moves_and_goes_through_the_door)
 {
-    const std::uint32_t cup = show(*host, "cup", 0.0);
+    const std::uint32_t cup = show(*server, "cup", 0.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
-    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), cup}));
+    EXPECT_EQ(shown_as(0), (ServerObject{server->epoch(), cup}));
     EXPECT_EQ(shown_as(1), std::nullopt);
-    const std::uint32_t pot = show(*host, "pot", 1.0, 1);
+    const std::uint32_t pot = show(*server, "pot", 1.0, 1);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
-    EXPECT_EQ(shown_as(1), (HostObject{host->epoch(), pot}));
+    EXPECT_EQ(shown_as(1), (ServerObject{server->epoch(), pot}));
     EXPECT_EQ(last_come().number, 1U);
     EXPECT_EQ(last_come().object.model.value, 1U);
     Pose pose;
     pose.translation_m = {1.5, 0.0, 0.0};
-    ASSERT_TRUE(host->objects().move(pot, pose));
+    ASSERT_TRUE(server->objects().move(pot, pose));
     ASSERT_TRUE(step_until([&] { return keeper->counts(1).accepted > 1; }));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_moves] > 0; }));
-    host->objects().remove(cup);
+    server->objects().remove(cup);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 1; }));
     EXPECT_EQ(shown_as(0), std::nullopt);
     EXPECT_EQ(keeper->news().came, 1U);
@@ -225,19 +225,19 @@ TEST_F(FollowedScene, comes_moves_and_goes_through_the_door)
     EXPECT_EQ(keeper->news().passed_over, 0U);
 }
 
-TEST_F(FollowedScene, feels_as_its_host_says)
+TEST_F(FollowedScene, feels_as_its_server_says)
 {
-    const std::uint32_t cup = show(*host, "cup", 0.0);
+    const std::uint32_t cup = show(*server, "cup", 0.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
-    const std::uint32_t pot = show(*host, "pot", 1.0, 1);
+    const std::uint32_t pot = show(*server, "pot", 1.0, 1);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     const Material honey{300.0, 0.4, 0.2, 1.5, 2.5};
-    ASSERT_TRUE(host->objects().feel(cup, honey));
+    ASSERT_TRUE(server->objects().feel(cup, honey));
     ASSERT_TRUE(step_until([&] { return keeper->news().feels == 1; }));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
-    ASSERT_TRUE(host->objects().feel(pot, honey));
+    ASSERT_TRUE(server->objects().feel(pot, honey));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 2; }));
-    host->objects().remove(pot);
+    server->objects().remove(pot);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 1; }));
     EXPECT_EQ(keeper->news().feels, 2U);
 }
@@ -246,10 +246,10 @@ TEST_F(FollowedScene, feels_as_its_host_says)
 /// of its wall.
 TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
 {
-    const std::uint32_t cup = show(*host, "cup", 0.0);
+    const std::uint32_t cup = show(*server, "cup", 0.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
     Material thick{9'000.0, 50.0, 40.0, 5.0, 900.0};
-    ASSERT_TRUE(host->objects().feel(cup, thick));
+    ASSERT_TRUE(server->objects().feel(cup, thick));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
     const Material felt = last_feel().object.material;
     EXPECT_EQ(felt.stiffness_n_per_m, 3'000.0);
@@ -265,37 +265,37 @@ TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
                           "static 50 to 3, dynamic 40 to 3, damping 5 to "))
         << lines.text();
     EXPECT_EQ(keeper->news().limited, 1U);
-    ShownObject pot{"pot", host->models()[1].store().hash(), {}, {}};
+    ShownObject pot{"pot", server->models()[1].store().hash(), {}, {}};
     pot.material = thick;
-    ASSERT_TRUE(host->objects().show(pot));
+    ASSERT_TRUE(server->objects().show(pot));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     EXPECT_EQ(last_come().object.material, felt);
     EXPECT_TRUE(lines.has("the material of object 'pot' is limited: ")) << lines.text();
     thick.static_friction = 60.0; // The material is unchanged.
-    ASSERT_TRUE(host->objects().feel(cup, thick));
+    ASSERT_TRUE(server->objects().feel(cup, thick));
     ASSERT_TRUE(step_until([&] { return keeper->news().limited == 3; }));
-    ASSERT_TRUE(host->objects().feel(cup, {}));
+    ASSERT_TRUE(server->objects().feel(cup, {}));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 2; }));
     EXPECT_EQ(keeper->news().limited, 3U);
     const std::string text = lines.text();
     EXPECT_EQ(text.find("object 'cup' is limited"), text.rfind("object 'cup' is limited"));
 }
 
-TEST_F(FollowedScene, feels_as_the_controller_was_told_whatever_the_host_says)
+TEST_F(FollowedScene, feels_as_the_controller_was_told_whatever_the_server_says)
 {
     ASSERT_EQ(materials.take(std::vector<std::string>{"cup:250,0.5"}), "");
-    const std::uint32_t cup = show(*host, "cup", 0.0);
-    const std::uint32_t pot = show(*host, "pot", 1.0);
+    const std::uint32_t cup = show(*server, "cup", 0.0);
+    const std::uint32_t pot = show(*server, "pot", 1.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
     const Material honey{300.0, 0.4, 0.2, 0.5, 2.5};
-    ASSERT_TRUE(host->objects().feel(cup, honey));
-    ASSERT_TRUE(host->objects().feel(pot, honey));
+    ASSERT_TRUE(server->objects().feel(cup, honey));
+    ASSERT_TRUE(server->objects().feel(pot, honey));
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
     EXPECT_EQ(last_feel().object.material, honey);
     EXPECT_EQ(last_feel().number, 1U);
-    host->objects().remove(cup);
+    server->objects().remove(cup);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 1; }));
-    show(*host, "cup", 2.0);
+    show(*server, "cup", 2.0);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     EXPECT_EQ(last_come().object.material, (Material{250.0, 0.5, 0.5}));
     EXPECT_EQ(keeper->news().feels, 1U);
@@ -304,72 +304,72 @@ TEST_F(FollowedScene, feels_as_the_controller_was_told_whatever_the_host_says)
 
 TEST_F(FollowedScene, leaves_out_what_has_no_room_until_there_is_some)
 {
-    const std::uint32_t cup = show(*host, "cup", 0.0);
+    const std::uint32_t cup = show(*server, "cup", 0.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 1));
-    const std::uint32_t pot = show(*host, "pot", 1.0);
+    const std::uint32_t pot = show(*server, "pot", 1.0);
     ASSERT_TRUE(step_until([&] { return keeper->news().passed_over == 1; }));
-    EXPECT_TRUE(lines.has("object 'pot' is not touched: there are 1 already")) << lines.text();
-    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), cup}));
-    host->objects().remove(cup);
+    EXPECT_TRUE(lines.has("object 'pot' can't be touched: --objects allows 1;")) << lines.text();
+    EXPECT_EQ(shown_as(0), (ServerObject{server->epoch(), cup}));
+    server->objects().remove(cup);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     EXPECT_EQ(changes[SceneChangeKind::object_goes], 1);
-    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), pot}));
+    EXPECT_EQ(shown_as(0), (ServerObject{server->epoch(), pot}));
 }
 
-TEST_F(FollowedScene, stays_and_grows_stale_when_its_host_is_gone_and_follows_no_other_one)
+TEST_F(FollowedScene, stays_and_grows_stale_when_its_server_is_gone_and_follows_no_other_one)
 {
-    const std::uint32_t cup = show(*host, "cup", 0.0);
-    show(*host, "pot", 1.0, 1);
+    const std::uint32_t cup = show(*server, "cup", 0.0);
+    show(*server, "pot", 1.0, 1);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
-    const std::uint64_t first = host->epoch();
+    const std::uint64_t first = server->epoch();
     ASSERT_TRUE(step_until([&] { return keeper->heard(0).ns > 0; }));
-    const auto second = make_host(kOtherHostDomain);
+    const auto second = make_server(kOtherServerDomain);
     show(*second, "jar", 2.0);
     ASSERT_TRUE(
         step_until([&] { return lines.has("scene 'workshop' is offered by a second server, "); },
                    second.get()))
         << lines.text();
-    host.reset();
+    server.reset();
     ASSERT_TRUE(step_until([&] { return !authorities[0].is_resident(); }, second.get()));
     const std::int64_t heard = keeper->heard(0).ns;
     ASSERT_TRUE(step_until([&] { return lines.has("which isn't followed"); }, second.get()));
     ASSERT_TRUE(step_until([&, until = 0]() mutable { return ++until == 300; }, second.get()));
     EXPECT_EQ(keeper->heard(0).ns, heard); // The answers are therefore stale.
-    EXPECT_EQ(shown_as(0), (HostObject{first, cup}));
+    EXPECT_EQ(shown_as(0), (ServerObject{first, cup}));
     EXPECT_EQ(changes[SceneChangeKind::object_goes], 0);
     EXPECT_EQ(changes[SceneChangeKind::object_comes], 0);
-    EXPECT_TRUE(lines.has("its objects stay where they are and are stale")) << lines.text();
+    EXPECT_TRUE(lines.has("its objects keep their poses and are stale")) << lines.text();
 }
 
-TEST_F(FollowedScene, goes_and_another_host_s_comes_where_failover_allows_that_one)
+TEST_F(FollowedScene, goes_and_another_server_s_comes_where_failover_allows_that_one)
 {
     failover.any = true;
-    show(*host, "cup", 0.0);
-    show(*host, "pot", 1.0, 1);
+    show(*server, "cup", 0.0);
+    show(*server, "pot", 1.0, 1);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));
-    const std::uint64_t first = host->epoch();
+    const std::uint64_t first = server->epoch();
     ASSERT_TRUE(step_until([&] { return keeper->heard(0).ns > 0; }));
-    host.reset();
+    server.reset();
     ASSERT_TRUE(step_until([&] { return !authorities[0].is_resident(); }));
     EXPECT_EQ(changes[SceneChangeKind::object_goes], 0);
-    const auto second = make_host(kOtherHostDomain);
+    const auto second = make_server(kOtherServerDomain);
     const std::uint32_t jar = show(*second, "jar", 2.0);
     ASSERT_TRUE(
         step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }, second.get()));
     EXPECT_NE(second->epoch(), first);
-    EXPECT_EQ(shown_as(last_come().number), (HostObject{second->epoch(), jar}));
+    EXPECT_EQ(shown_as(last_come().number), (ServerObject{second->epoch(), jar}));
     EXPECT_EQ(keeper->news().went, 2U);
-    EXPECT_TRUE(lines.has("scene 'workshop' is followed as ")) << lines.text();
+    EXPECT_TRUE(lines.has("scene 'workshop' now follows ")) << lines.text();
 }
 
 TEST_F(FollowedScene, passes_over_objects_of_models_that_are_not_here)
 {
-    show(*host, "cup", 0.0);
+    show(*server, "cup", 0.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 4, 1));
-    show(*host, "pot", 1.0, 1);
+    show(*server, "pot", 1.0, 1);
     ASSERT_TRUE(step_until([&] { return keeper->news().passed_over == 1; }));
-    EXPECT_TRUE(lines.has("object 'pot' is not touched: its model ")) << lines.text();
-    show(*host, "jar", 2.0);
+    EXPECT_TRUE(lines.has("object 'pot' can't be touched: its model ")) << lines.text();
+    show(*server, "jar", 2.0);
     ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
     EXPECT_EQ(keeper->news().passed_over, 1U);
     EXPECT_EQ(changes[SceneChangeKind::object_comes], 1);
@@ -379,21 +379,21 @@ class FollowedModel : public SceneKeeperRig
 {
 };
 
-TEST_F(FollowedModel, goes_where_the_host_s_object_with_the_least_number_is)
+TEST_F(FollowedModel, goes_where_the_server_s_object_with_the_least_number_is)
 {
-    const std::uint32_t other = show(*host, "other", 5.0, 1);
-    const std::uint32_t cup = show(*host, "cup", 1.0);
-    const std::uint32_t pot = show(*host, "pot", 2.0);
+    const std::uint32_t other = show(*server, "other", 5.0, 1);
+    const std::uint32_t cup = show(*server, "cup", 1.0);
+    const std::uint32_t pot = show(*server, "pot", 2.0);
     ASSERT_LT(cup, pot);
     ASSERT_NO_FATAL_FAILURE(start(false, 1));
     ASSERT_TRUE(step_until([&] { return shown_as(0).has_value(); }));
     ASSERT_TRUE(step_until([&] { return keeper->counts(0).accepted > 0; }));
-    EXPECT_EQ(shown_as(0), (HostObject{host->epoch(), cup}));
+    EXPECT_EQ(shown_as(0), (ServerObject{server->epoch(), cup}));
     EXPECT_EQ(keeper->counts(1).accepted, 0U); // None of ours shows it.
-    host->objects().remove(other);
-    host->objects().remove(cup);
-    ASSERT_TRUE(step_until([&] { return shown_as(0) == HostObject{host->epoch(), pot}; }));
-    host->objects().remove(pot);
+    server->objects().remove(other);
+    server->objects().remove(cup);
+    ASSERT_TRUE(step_until([&] { return shown_as(0) == ServerObject{server->epoch(), pot}; }));
+    server->objects().remove(pot);
     ASSERT_TRUE(step_until([&] { return !shown_as(0).has_value(); }));
     EXPECT_EQ(changes[SceneChangeKind::object_goes], 0); // The object stays in place.
     EXPECT_EQ(changes[SceneChangeKind::object_comes], 0);

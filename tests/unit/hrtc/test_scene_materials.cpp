@@ -30,9 +30,8 @@ TEST(SceneMaterials, of_one_object_go_before_that_of_all_and_both_before_the_sce
 TEST(SceneMaterials, are_refused_for_what_is_wrong_with_them)
 {
     const auto refusal = [](const Words& options) { return SceneMaterials().take(options); };
-    EXPECT_EQ(
-        refusal({"100", "200"}),
-        "--material: is given twice for all objects of the scene; OBJECT:MATERIAL is for one");
+    EXPECT_EQ(refusal({"100", "200"}), "--material: is given twice for all objects of the scene; "
+                                       "use OBJECT:MATERIAL for one object");
     EXPECT_EQ(refusal({"cup:100", "pot:100", "cup:200"}), "--material: is given twice for 'cup'");
     EXPECT_EQ(refusal({":100"}),
               "--material: ':100': an object's name is missing before the colon");

@@ -134,7 +134,7 @@ TEST(SelfCheck, fails_when_any_injected_fault_went_unseen_or_was_taken_for_anoth
         EXPECT_FALSE(unseen.is_passed());
         EXPECT_EQ(unseen.flagged + 1, unseen.injected);
         EXPECT_EQ(unseen.unseen, frame);
-        EXPECT_NE(self_check_line(unseen).find("unseen in frame " + std::to_string(frame) + ": "),
+        EXPECT_NE(self_check_line(unseen).find("missed in frame " + std::to_string(frame) + ": "),
                   std::string::npos);
         const InjectedFault other =
             *fault == InjectedFault::sleep ? InjectedFault::page_fault : InjectedFault::sleep;

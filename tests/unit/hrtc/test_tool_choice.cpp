@@ -75,10 +75,10 @@ TEST(ToolChoice, reaches_as_far_as_its_farthest_point)
 
 TEST(ToolChoice, is_held_where_it_touches)
 {
-    EXPECT_EQ(hand_radius_m(parse_tool("point").value(), nullptr, 0.3), 0.003);
-    EXPECT_EQ(hand_radius_m(parse_tool("sphere:0.25").value(), nullptr, 0.3), 0.25);
-    EXPECT_EQ(hand_radius_m(parse_tool("sphere:0.25").value(), nullptr, 0.2), 0.2);
-    EXPECT_EQ(hand_radius_m(parse_tool("capsule:0.25,0.5").value(), nullptr, 0.3), 0.25);
+    EXPECT_EQ(operator_radius_m(parse_tool("point").value(), nullptr, 0.3), 0.003);
+    EXPECT_EQ(operator_radius_m(parse_tool("sphere:0.25").value(), nullptr, 0.3), 0.25);
+    EXPECT_EQ(operator_radius_m(parse_tool("sphere:0.25").value(), nullptr, 0.2), 0.2);
+    EXPECT_EQ(operator_radius_m(parse_tool("capsule:0.25,0.5").value(), nullptr, 0.3), 0.25);
 }
 
 /// Folder with files for one test.
@@ -152,7 +152,8 @@ TEST_F(ToolFiles, add_what_is_a_mesh_to_the_models_once)
 
 TEST_F(ToolFiles, refuse_a_mesh_that_is_touched_as_well)
 {
-    EXPECT_NE(refusal_of(of("mesh:cow")).find("'cow' is touched as well"), std::string::npos);
+    EXPECT_NE(refusal_of(of("mesh:cow")).find("'cow' is the model of an object as well"),
+              std::string::npos);
 }
 
 } // namespace

@@ -163,7 +163,7 @@ TEST_F(ToolPortTest, the_tool_turns_as_the_device_says)
     const ToolState& state = sut_->read(1);
     EXPECT_TRUE(state.valid);
     EXPECT_LT((state.rotation - device().hand.rotation).norm(), 1e-15);
-    EXPECT_FALSE(sut_->record().hand);
+    EXPECT_FALSE(sut_->record().pose);
     EXPECT_TRUE(sut_->record().measures_rotation);
 }
 
@@ -184,10 +184,10 @@ TEST_F(ToolPortTest, a_rotation_that_is_none_makes_the_sample_invalid)
 /// Box rotated against its proxy, on a device with torque.
 TEST_F(ToolPortTest, a_torque_goes_out_with_the_force_and_fades_with_it)
 {
-    device().measure_rotation(kDeskTurn);
+    device().measure_rotation(kDeskRotation);
     setup_.spec.core = Box{Vec3(0.01, 0.01, 0.01)};
     setup_.conditioner.device = device().info().limits;
-    setup_.limits.torque_max_nm = kDeskTurn.torque_max_nm;
+    setup_.limits.torque_max_nm = kDeskRotation.torque_max_nm;
     restart();
     pushed_.torque_nm = Vec3(0.0, 0.1, 0.0);
     pushed_.proxy_rotation = to_rotation({0.0, 0.1, 0.0, 1.0});
@@ -288,7 +288,7 @@ TEST_F(ToolPortTest, a_held_button_parts_hand_and_tool_without_a_force)
         EXPECT_EQ(sut_->read(1).rotation, held.rotation);
     }
     EXPECT_EQ(device().written_n, Vec3(0.0, 0.0, 0.0));
-    EXPECT_EQ(sut_->record().hand->position_m, device().hand.position_m);
+    EXPECT_EQ(sut_->record().pose->position_m, device().hand.position_m);
 
     device().buttons = 0;
     EXPECT_LT((sut_->read(1).position_m - held.position_m).norm(), 1e-15) << "goes on from there";

@@ -23,7 +23,7 @@ Report good_report()
         "answers": {"exact": 40, "separated": 60, "within_tolerance": 0, "bounded": 0, "stale": 0},
         "budgets": {"frame_us": null, "splits": 64}, "scene": {"limited": 0},
         "pools": {"total_bytes": 2000000},
-        "wire": {"host_lost": false},
+        "wire": {"server_lost": false},
         "deadline": {"overrun": 0, "stopped": 0},
         "realtime": {"allocations": 0, "system_calls_in_frame": 0}, "recording": null,
         "force": {"contact_share": 0.5, "data_limited_share": 0.125},
@@ -67,18 +67,19 @@ TEST(Verdict, judges_mesh_and_scene_controller_and_machine_apart)
     report["safety"]["begun"]["stall"] = 26;
     report["safety"]["begun"]["watchdog"] = 1;
     report["safety"]["supervisor_brakes"] = 2;
-    EXPECT_EQ(verdict_text(complaints_of(report)),
-              "mesh and scene: ok | controller: ok | machine: it woke the loop late, and the force "
-              "faded for a moment 27 times (2 brakes by the supervisor): 'hrtc doctor' says why");
+    EXPECT_EQ(
+        verdict_text(complaints_of(report)),
+        "mesh and scene: ok | controller: ok | machine: the loop was woken late, and the force "
+        "faded for a moment 27 times (2 brakes by the supervisor): 'hrtc doctor' lists the causes");
     EXPECT_TRUE(is_machine_alone(complaints_of(report)));
     EXPECT_FALSE(fails_when_strict(report));
     report["deadline"]["overrun"] = 1; // The loop itself may then be the cause.
-    EXPECT_EQ(verdict(report), "controller: 1 deadline missed by an overrun of the loop; force off "
-                               "for: watchdog 1, stall 26; 2 brakes by the supervisor");
+    EXPECT_EQ(verdict(report), "controller: 1 deadline missed by an overrun of the loop; force "
+                               "off, causes: watchdog 1, stall 26; 2 brakes by the supervisor");
     EXPECT_FALSE(is_machine_alone(complaints_of(report)));
     report = good_report();
     report["safety"]["begun"]["watchdog"] = 1; // The device was silent by itself.
-    EXPECT_EQ(verdict(report), "controller: force off for: watchdog 1");
+    EXPECT_EQ(verdict(report), "controller: force off, causes: watchdog 1");
     report = good_report();
     report["deadline"]["stopped"] = 1;
     EXPECT_EQ(verdict(report),
@@ -88,24 +89,24 @@ TEST(Verdict, judges_mesh_and_scene_controller_and_machine_apart)
 TEST(Verdict, names_losses_which_fail_a_strict_run)
 {
     Report report = good_report();
-    report["wire"]["host_lost"] = true;
-    EXPECT_EQ(verdict(report), "mesh and scene: the host went away");
+    report["wire"]["server_lost"] = true;
+    EXPECT_EQ(verdict(report), "mesh and scene: the server was lost");
     report["models"][0]["pieces_refused"] = 1;
     report["models"][0]["pieces_overdue"] = 8;
     report["models"][0]["pieces_missing"] = 5;
     report["scene"]["limited"] = 2;
-    EXPECT_EQ(
-        verdict(report),
-        "mesh and scene: the host went away; 1 damaged piece of plate; 8 pieces of plate that "
-        "didn't come within 1 s, 5 never; 2 materials were limited");
+    EXPECT_EQ(verdict(report),
+              "mesh and scene: the server was lost; 1 damaged piece of plate; 8 pieces of plate "
+              "did not arrive within 1 s, 5 never; 2 materials were limited");
     EXPECT_TRUE(fails_when_strict(report));
     report = good_report();
     report["safety"]["begun"]["disconnect"] = 4;
-    EXPECT_EQ(verdict(report), "controller: force off for: disconnect 4; devices gone: 4");
+    EXPECT_EQ(verdict(report),
+              "controller: force off, causes: disconnect 4; 4 device disconnections");
     EXPECT_TRUE(fails_when_strict(report));
     report = good_report();
     report["tools"][0]["least_stiffness_n_per_m"] = 0.5;
-    EXPECT_EQ(verdict(report), "controller: tool 0: a wall of 0.5 N/m, which no hand feels");
+    EXPECT_EQ(verdict(report), "controller: tool 0: a stiffness of 0.5 N/m, too soft to feel");
     EXPECT_TRUE(fails_when_strict(report));
 }
 
@@ -131,23 +132,22 @@ TEST(Verdict, says_why_nothing_was_touched)
     report["force"]["contact_share"] = 0.0;
     report["force"]["data_limited_share"] = 0.0;
     const std::string nothing = "mesh and scene: nothing was touched: ";
-    EXPECT_EQ(verdict(report),
-              nothing + "a tool came near, and the run ended before it reached the surface");
+    EXPECT_EQ(verdict(report), nothing + "a tool came near, but the run ended before a contact");
     EXPECT_TRUE(fails_when_strict(report));
     report["force"]["data_limited_share"] = 0.1;
-    EXPECT_EQ(verdict(report), nothing + "the tool was data-limited before the surface");
+    EXPECT_EQ(verdict(report), nothing + "the tool was data-limited before it reached the surface");
     report["safety"]["begun"]["velocity"] = 2;
-    EXPECT_EQ(verdict(report), nothing + "the force was off for velocity | controller: force off "
-                                         "for: velocity 2");
+    EXPECT_EQ(verdict(report),
+              nothing +
+                  "the force was off, cause velocity | controller: force off, causes: velocity 2");
     report["answers"] = {
         {"exact", 0}, {"separated", 100}, {"within_tolerance", 0}, {"bounded", 0}, {"stale", 0}};
     report["safety"]["begun"]["velocity"] = 0;
-    EXPECT_EQ(verdict(report), nothing + "no tool came near an object; the lines at the start say "
-                                         "where they are");
-    report["tools"][0]["begins_inside"] = "plate";
     EXPECT_EQ(verdict(report),
-              "mesh and scene: tool 0 began inside plate, whose surface then holds "
-              "it from within; nothing was touched: the tool began inside");
+              nothing + "no tool came near an object; the lines at the start give their positions");
+    report["tools"][0]["begins_inside"] = "plate";
+    EXPECT_EQ(verdict(report), "mesh and scene: tool 0 began inside plate, and the surface keeps "
+                               "it inside; nothing was touched: the tool began inside");
 }
 
 TEST(Verdict, names_the_limit_that_held_the_tool_back_and_what_helps)
@@ -170,14 +170,15 @@ TEST(Verdict, names_the_limit_that_held_the_tool_back_and_what_helps)
     EXPECT_EQ(
         verdict(report),
         "mesh and scene: data-limited for 0.0 % of the time, and the force faded 2 times: more "
-        "triangles are in reach of the tool than a frame looks at (surface_truncated in 2749 "
-        "frames): a smaller --tool, or a model of fewer faces; no memory helps");
+        "triangles are in reach of the tool than a frame can search (surface_truncated in 2749 "
+        "frames): a smaller --tool, or a model with fewer faces; more memory does not help");
     EXPECT_TRUE(fails_when_strict(report));
     report["faults"]["split_budget_spent"] = 3'000;
-    EXPECT_NE(verdict(report).find("(split_budget_spent in 3000 frames): --splits 256, the most"),
+    EXPECT_NE(verdict(report).find(
+                  "(split_budget_spent in 3000 frames): --splits 256, the largest value"),
               std::string::npos);
     report["budgets"]["frame_us"] = 200.0;
-    EXPECT_NE(verdict(report).find("): --splits 256, the most"), std::string::npos);
+    EXPECT_NE(verdict(report).find("): --splits 256, the largest value"), std::string::npos);
     report["budgets"]["splits"] = 256;
     EXPECT_NE(verdict(report).find("): --frame-budget-us above 200"), std::string::npos);
     report["faults"]["node_budget_spent"] = 4'000;

@@ -18,7 +18,7 @@ namespace tactus::test
 {
 
 /// Hand at the origin.
-class HandAtRest final : public OperatorMotion
+class OperatorAtRest final : public OperatorMotion
 {
 public:
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
@@ -53,7 +53,7 @@ public:
     {
         SimulatedDeviceOptions options;
         options.device = limits;
-        auto made = SimulatedDevice::create(options, std::make_unique<HandAtRest>());
+        auto made = SimulatedDevice::create(options, std::make_unique<OperatorAtRest>());
         device_ = std::make_unique<FaultyDevice>(std::move(made).value(), faults_);
     }
     [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }

@@ -29,13 +29,13 @@ TEST(DevicePlugin, a_library_that_makes_no_device_is_refused_with_its_name)
 {
     EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, "refuses"), "is not plugged in");
     EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, ""),
-              "its TACTUS_DEVICE_PLUGIN makes no device and says no reason");
+              "its TACTUS_DEVICE_PLUGIN returned no device and no reason");
     EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, "throws"),
               "its TACTUS_DEVICE_PLUGIN threw: no such port");
     EXPECT_EQ(refusal_of(TACTUS_FAULTY_PLUGIN, "throws a number"),
-              "its TACTUS_DEVICE_PLUGIN threw what is no std::exception");
+              "its TACTUS_DEVICE_PLUGIN threw an exception that is no std::exception");
     EXPECT_EQ(refusal_of(TACTUS_EMPTY_PLUGIN, ""),
-              "is no device: its TACTUS_DEVICE_PLUGIN has no function");
+              "is no device library: its TACTUS_DEVICE_PLUGIN has no function");
 }
 
 TEST(DevicePlugin, a_guard_that_a_library_refuses_is_refused_with_its_name)
@@ -47,7 +47,7 @@ TEST(DevicePlugin, a_guard_that_a_library_refuses_is_refused_with_its_name)
     };
     const std::string name = std::string(TACTUS_FAULTY_PLUGIN) + ": ";
     EXPECT_EQ(refusal("no guard"), name + "has no second line to its motors");
-    EXPECT_EQ(refusal(""), name + "its TACTUS_DEVICE_PLUGIN makes no guard and says no reason");
+    EXPECT_EQ(refusal(""), name + "its TACTUS_DEVICE_PLUGIN returned no guard and no reason");
     EXPECT_EQ(refusal("throws"), name + "its TACTUS_DEVICE_PLUGIN threw: no such port");
     EXPECT_FALSE(load_guard("nowhere.so", {1'000, {}, ""}));
 }

@@ -105,17 +105,17 @@ TEST_F(DhdDeviceTest, says_in_one_line_that_the_sdk_is_missing)
 TEST_F(DhdDeviceTest, says_in_one_line_which_function_is_missing)
 {
     options.library = TACTUS_OLD_STAND_IN_DHD;
-    EXPECT_TRUE(refusal_has("has no function dhdSetForceAndTorqueAndGripperForce; it takes Force "
-                            "Dimension's SDK 3"));
+    EXPECT_TRUE(refusal_has("has no function dhdSetForceAndTorqueAndGripperForce; Force "
+                            "Dimension's SDK 3 is required"));
 }
 
 TEST_F(DhdDeviceTest, says_in_one_line_that_no_device_is_there_or_can_be_opened)
 {
     stand_in->count = 0;
-    EXPECT_TRUE(refusal_has("the SDK finds none; is it plugged in"));
+    EXPECT_TRUE(refusal_has("the SDK finds no device; check the cable"));
     stand_in->count = 2;
     options.index = 2;
-    EXPECT_TRUE(refusal_has("there is no device 2, they are 0..1"));
+    EXPECT_TRUE(refusal_has("there is no device 2; the devices are 0..1"));
     stand_in->count = 8;
     options.index = 0;
     hand().is_open = true; // Open in another program.

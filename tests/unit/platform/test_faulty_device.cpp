@@ -17,7 +17,7 @@ namespace
 {
 
 /// Hand that moves along x by a millimetre each period.
-class HandThatWalks final : public OperatorMotion
+class OperatorThatWalks final : public OperatorMotion
 {
 public:
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
@@ -29,7 +29,7 @@ public:
 
 std::unique_ptr<SimulatedDevice> walking_device()
 {
-    return std::move(SimulatedDevice::create({}, std::make_unique<HandThatWalks>())).value();
+    return std::move(SimulatedDevice::create({}, std::make_unique<OperatorThatWalks>())).value();
 }
 
 std::vector<DeviceSample> readings(HapticDevice& device, std::size_t count = 30)
@@ -160,7 +160,7 @@ TEST(FaultyDevice, time_jumps_ahead_by_a_second_and_falls_back)
 TEST(FaultyDevice, disconnected_makes_no_force_and_comes_back_idle)
 {
     auto device =
-        std::move(SimulatedDevice::create({}, std::make_unique<test::HandAtRest>())).value();
+        std::move(SimulatedDevice::create({}, std::make_unique<test::OperatorAtRest>())).value();
     const SimulatedDevice& simulated = *device;
     FaultyDevice sut(std::move(device), {{DeviceFaultKind::disconnect, 10, 5}});
     for (std::uint64_t i = 0; i < 20; ++i)

@@ -42,7 +42,7 @@ TEST(GenericExtras, refuse_a_processor_and_say_why)
     ASSERT_FALSE(refused);
     EXPECT_FALSE(has_run);
     EXPECT_TRUE(refused.error().is_usage);
-    EXPECT_TRUE(contains(refused.error().text, "processor 0 can't be asked for"));
+    EXPECT_TRUE(contains(refused.error().text, "processor 0 can't be chosen"));
     EXPECT_TRUE(contains(refused.error().text, "leave the choice to the system"));
     EXPECT_EQ(linux_extras::another_cpu(0), std::nullopt);
 }
@@ -64,7 +64,7 @@ TEST(GenericExtras, tell_who_lacks_which_right_in_one_line)
          {linux_extras::explain_fifo_refusal(80, EPERM), linux_extras::explain_lock_refusal(EPERM)})
     {
         EXPECT_TRUE(contains(line, "refused (EPERM): "));
-        EXPECT_TRUE(contains(line, " lacks this system's right to "));
+        EXPECT_TRUE(contains(line, " lacks the right to "));
         EXPECT_FALSE(contains(line, "\n"));
     }
     EXPECT_TRUE(contains(linux_extras::explain_fifo_refusal(80, EPERM), "SCHED_FIFO 80"));

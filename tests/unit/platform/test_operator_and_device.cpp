@@ -207,7 +207,7 @@ TEST(OperatorAndDevice, refuses_what_it_cannot_be)
     EXPECT_NE(refusal(options).find("device's mass"), std::string::npos);
     options = {};
     options.hand = {0.0, 0.0, 0.0, 100.0, 1.0};
-    EXPECT_NE(refusal(options).find("hand's values"), std::string::npos);
+    EXPECT_NE(refusal(options).find("operator's values"), std::string::npos);
     options = {};
     options.period_s = std::numeric_limits<double>::quiet_NaN();
     EXPECT_NE(refusal(options).find("period"), std::string::npos);

@@ -98,8 +98,8 @@ struct Play
         SimulatedDeviceOptions options;
         options.workspace_centre_world_m = motion.centre_world_m;
         options.workspace_radius_m = motion.reach_m;
-        test::FakeWall wall(shape, 500.0, kTool_m, motion.hand->start_world_m());
-        auto device = std::move(SimulatedDevice::create(options, std::move(motion.hand))).value();
+        test::FakeWall wall(shape, 500.0, kTool_m, motion.motion->start_world_m());
+        auto device = std::move(SimulatedDevice::create(options, std::move(motion.motion))).value();
         for (std::uint64_t frame = 0; frame < frames; ++frame)
         {
             const DeviceSample sample = device->read();
@@ -335,10 +335,10 @@ TEST(OperatorMotions, teleport_is_at_places_of_the_model_and_jumps_between_them)
     const auto places_of = [](std::uint64_t seed)
     {
         const MadeMotion sut = make(MotionKind::teleport, 10'000, seed);
-        std::vector<Vec3> places{sut.hand->start_world_m()};
+        std::vector<Vec3> places{sut.motion->start_world_m()};
         for (std::uint64_t frame = 1; frame < 10'000; ++frame)
         {
-            const Vec3 place = sut.hand->next_world_m({frame, Vec3::Zero(), Vec3::Zero()});
+            const Vec3 place = sut.motion->next_world_m({frame, Vec3::Zero(), Vec3::Zero()});
             if (place != places.back())
             {
                 places.push_back(place);
@@ -397,15 +397,15 @@ TEST(OperatorMotions, tremor_is_the_script_with_swings_of_8_to_12_hz_by_its_seed
     const MadeMotion plain = make(MotionKind::script, kFrames);
     const MadeMotion one = make(MotionKind::tremor, kFrames);
     const MadeMotion other = make(MotionKind::tremor, kFrames, 2);
-    EXPECT_EQ(one.hand->start_world_m(), plain.hand->start_world_m());
+    EXPECT_EQ(one.motion->start_world_m(), plain.motion->start_world_m());
     std::array<std::vector<double>, 3> tremor_m;
     bool has_own_seed = false;
     for (std::uint64_t frame = 1; frame <= kFrames; ++frame)
     {
         const OperatorSense sense{frame, Vec3::Zero(), Vec3::Zero()};
-        const Vec3 still_m = plain.hand->next_world_m(sense);
-        const Vec3 difference_m = one.hand->next_world_m(sense) - still_m;
-        has_own_seed |= other.hand->next_world_m(sense) - still_m != difference_m;
+        const Vec3 still_m = plain.motion->next_world_m(sense);
+        const Vec3 difference_m = one.motion->next_world_m(sense) - still_m;
+        has_own_seed |= other.motion->next_world_m(sense) - still_m != difference_m;
         for (int axis = 0; axis < 3; ++axis)
         {
             tremor_m[static_cast<std::size_t>(axis)].push_back(difference_m[axis]);

@@ -17,7 +17,7 @@ namespace
 OperatorRotationOptions held_loosely()
 {
     OperatorRotationOptions options;
-    options.device = kDeskTurn;
+    options.device = kDeskRotation;
     options.wrist = {.mass_kg = 5e-5,
                      .stiffness_n_per_m = 0.5,
                      .damping_n_s_per_m = 0.012,
@@ -36,9 +36,9 @@ TEST(OperatorRotation, turns_about_one_axis_as_a_point_mass_moves)
 {
     auto sut = std::move(OperatorRotation::create(held_loosely())).value();
     OperatorAndDeviceOptions line;
-    line.device = {.mass_kg = kDeskTurn.inertia_kg_m2,
-                   .damping_n_s_per_m = kDeskTurn.damping_nm_s_per_rad,
-                   .force_max_n = kDeskTurn.torque_max_nm,
+    line.device = {.mass_kg = kDeskRotation.inertia_kg_m2,
+                   .damping_n_s_per_m = kDeskRotation.damping_nm_s_per_rad,
+                   .force_max_n = kDeskRotation.torque_max_nm,
                    .slew_max_n_per_s = 1.0,
                    .stiffness_max_n_per_m = 1.0};
     line.hand = held_loosely().wrist;
@@ -127,7 +127,9 @@ TEST(OperatorRotation, refuses_a_device_without_inertia)
     options.device.inertia_kg_m2 = 0.0;
     const auto sut = OperatorRotation::create(options);
     ASSERT_FALSE(sut);
-    EXPECT_EQ(sut.error().text.rfind("turning, hand and device: the device's mass", 0), 0U)
+    EXPECT_EQ(sut.error().text.rfind(
+                  "rotation of the simulated operator and device: the device's mass", 0),
+              0U)
         << sut.error().text;
 }
 

@@ -59,7 +59,7 @@ TEST(SceneMailbox, tells_of_what_moved_and_of_nothing_else)
     EXPECT_TRUE(sut.refresh(kStart + milliseconds(1)).empty());
 }
 
-TEST(SceneMailbox, counts_the_age_from_when_the_host_was_heard_on_its_own_clock)
+TEST(SceneMailbox, counts_the_age_from_when_the_server_was_heard_on_its_own_clock)
 {
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     SceneMailbox sut(placed, kLimit);
@@ -81,7 +81,7 @@ TEST(SceneMailbox, counts_the_age_from_when_the_host_was_heard_on_its_own_clock)
     EXPECT_EQ(sut.uses()[0].old_frames, 1U);
 }
 
-TEST(SceneMailbox, tells_the_frame_of_a_silent_host_before_the_limit_and_of_one_that_is_back)
+TEST(SceneMailbox, tells_the_frame_of_a_silent_server_before_the_limit_and_of_one_that_is_back)
 {
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     SceneMailbox sut(placed, kLimit);
@@ -433,7 +433,7 @@ TEST(SceneMailbox, takes_what_outruns_its_belief_after_a_rest_at_once_and_says_s
 }
 
 /// Times of a server may be any numbers: no difference of them overflows.
-TEST(SceneMailbox, takes_poses_of_any_time_that_the_clock_of_their_host_shows)
+TEST(SceneMailbox, takes_poses_of_any_time_that_the_clock_of_their_server_shows)
 {
     constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
     constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
@@ -498,7 +498,7 @@ TEST(SceneMailbox, tells_of_each_of_many_silent_objects_before_the_limit_once)
     }
 }
 
-TEST(SceneMailbox, leaves_an_object_that_came_and_whose_host_falls_silent_where_it_stands)
+TEST(SceneMailbox, leaves_an_object_that_came_and_whose_server_falls_silent_where_it_stands)
 {
     SceneMailbox sut({}, 3, kLimit);
     ASSERT_TRUE(sut.try_come(2, 1, {}, pose_of(4.0), kStart));

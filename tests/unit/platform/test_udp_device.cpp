@@ -108,7 +108,7 @@ TEST_F(UdpDeviceTest, refuses_options_out_of_range_in_one_line)
     };
     UdpDeviceOptions bad = options;
     bad.address = "localhost";
-    EXPECT_NE(line_of(bad).find("'localhost' is no numeric IPv4 address"), std::string::npos);
+    EXPECT_NE(line_of(bad).find("'localhost' is not a numeric IPv4 address"), std::string::npos);
     bad.address = "192.0.2.1"; // Unused address of RFC 5737.
     EXPECT_NE(line_of(bad).find("can't listen on 192.0.2.1:48500"), std::string::npos);
     bad = options;

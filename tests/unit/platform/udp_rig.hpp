@@ -35,7 +35,7 @@ public:
 
 private:
     std::unique_ptr<SimulatedDevice> device_ =
-        std::move(SimulatedDevice::create({}, std::make_unique<HandAtRest>())).value();
+        std::move(SimulatedDevice::create({}, std::make_unique<OperatorAtRest>())).value();
 };
 
 /// Times that no stall of the machine reaches, for tests of other properties.

@@ -34,7 +34,7 @@ struct ExampleFrame
     {
         tools[0].rotation << 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0;
         DeviceRecord& device = devices[0];
-        device.hand = DevicePose{Vec3(31.0, 32.0, 33.0), Mat3::Identity()};
+        device.pose = DevicePose{Vec3(31.0, 32.0, 33.0), Mat3::Identity()};
         device.velocity_m_per_s = Vec3(34.0, 35.0, 36.0);
         device.angular_velocity_rad_per_s = Vec3(37.0, 38.0, 39.0);
         device.buttons = 40;

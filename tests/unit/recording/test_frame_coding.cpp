@@ -137,7 +137,7 @@ TEST(FrameCoding, gives_back_what_a_device_said_and_was_told_and_no_more)
     ByteReader whole(bytes);
     ASSERT_EQ(sut.decode(whole), nullptr);
     const DeviceRecord& got = sut.frame().devices[0];
-    EXPECT_EQ(got.hand->position_m, frame.devices[0].hand->position_m);
+    EXPECT_EQ(got.pose->position_m, frame.devices[0].pose->position_m);
     EXPECT_EQ(got.gripper_m, 41.0);
     EXPECT_EQ(got.buttons, 40U);
     EXPECT_EQ(got.sent_nm, Vec3(45.0, 46.0, 47.0));
@@ -151,7 +151,7 @@ TEST(FrameCoding, gives_back_what_a_device_said_and_was_told_and_no_more)
     ASSERT_EQ(sut.decode(bare), nullptr);
     EXPECT_FALSE(got.connected);
     EXPECT_TRUE(got.deadman_held);
-    EXPECT_FALSE(got.hand || got.velocity_m_per_s || got.angular_velocity_rad_per_s);
+    EXPECT_FALSE(got.pose || got.velocity_m_per_s || got.angular_velocity_rad_per_s);
     EXPECT_FALSE(got.gripper_m || got.measures_rotation);
     EXPECT_EQ(got.buttons, 0U);
     EXPECT_EQ(got.sent_n, Vec3(0.0, 0.0, 0.0));
@@ -217,7 +217,7 @@ TEST(FrameCoding, of_a_frame_that_failed_says_what_it_was_given_and_nothing_foll
     ByteReader reader(bytes);
     EXPECT_EQ(decoder.decode(reader), nullptr);
     EXPECT_FALSE(decoder.frame().has_hashes);
-    EXPECT_STREQ(decoder.decode(reader), "has hashes behind one without");
+    EXPECT_STREQ(decoder.decode(reader), "has hashes, but the frame before has none");
 }
 
 } // namespace

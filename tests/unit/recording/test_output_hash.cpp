@@ -61,7 +61,7 @@ std::vector<Part> parts()
           tool([](auto& t) { t.stiffness_n_per_m = 1.0; }),
           tool([](auto& t) { t.lag_m = 1.0; }),
           tool([](auto& t) { t.object_way_m = 1.0; }),
-          tool([](auto& t) { t.object_turn_rad = 1.0; }),
+          tool([](auto& t) { t.object_rotation_rad = 1.0; }),
           tool([](auto& t) { t.carried_m.x() = 1.0; }),
           tool([](auto& t) { t.carried_rad.z() = 1.0; }),
           tool([](auto& t) { t.sample_fault = FrameFault::tool_stuck; }),

@@ -168,10 +168,11 @@ TEST(RecordingFile, keeps_the_names_of_models_and_of_objects_that_come_later)
          {RecordedName{Kind::model, 1}, RecordedName{Kind::object, 5},
           RecordedName{Kind::model, 0, 1}, RecordedName{static_cast<Kind>(2), 0}})
     {
-        expect_refusal(with_name(none, "x"), "a name is of no model or object of the recording");
+        expect_refusal(with_name(none, "x"),
+                       "a name belongs to no model or object of the recording");
     }
     expect_refusal(with_name({Kind::object, 0}, "a\x1B[31m"),
-                   "a name is not of at most 63 bytes, of characters that can be seen");
+                   "a name is not at most 63 bytes of printable characters");
 }
 
 TEST(RecordingFile, begins_with_its_magic_and_version)
@@ -185,7 +186,7 @@ TEST(RecordingFile, tells_from_where_frames_were_lost)
     const auto sut = Recording::parse(example(3), "run.rec");
     ASSERT_TRUE(sut) << sut.error().text;
     EXPECT_EQ(sut.value().lost_from(), 3U);
-    expect_refusal(example(2), "the first lost frame is 2; after 3 frames only that number");
+    expect_refusal(example(2), "the first lost frame is 2, but must be 3");
 }
 
 /// Recording of `of_run` frames, and `given` frames of inputs only.
@@ -215,7 +216,7 @@ TEST(RecordingFile, of_a_run_that_failed_ends_with_the_frame_that_did)
     EXPECT_TRUE(sut.value().keeps_run());
     EXPECT_EQ(sut.value().frame_count(), 4U);
     EXPECT_FALSE(with_given_frames(3, 0).value().has_failed());
-    EXPECT_NE(with_given_frames(3, 2).error().text.find("frame 4 is behind one that failed"),
+    EXPECT_NE(with_given_frames(3, 2).error().text.find("frame 4 follows a failed frame"),
               std::string::npos);
 }
 
@@ -228,15 +229,16 @@ TEST(RecordingFile, of_the_last_inputs_alone_is_no_run_and_is_not_replayed)
     EXPECT_EQ(sut.value().frame_count(), 5U);
     const auto replayed = replay(sut.value());
     ASSERT_FALSE(replayed);
-    EXPECT_NE(replayed.error().text.find("keeps what the last 5 frames"), std::string::npos);
+    EXPECT_NE(replayed.error().text.find("holds only the last 5 frames"), std::string::npos);
 }
 
 TEST(RecordingFile, is_refused_when_it_is_of_another_kind_or_version)
 {
     std::vector<std::byte> bytes = example();
     bytes[8] = std::byte{2};
-    expect_refusal(bytes,
-                   "at byte 8: format version 2 is of an older Tactus; this program reads 12");
+    expect_refusal(
+        bytes,
+        "at byte 8: format version 2 is from an older version of Tactus; this program reads 12");
     bytes[3] = std::byte{'X'};
     expect_refusal(bytes, "is not a Tactus recording");
     bytes = example();
@@ -269,11 +271,11 @@ TEST(RecordingFile, is_refused_when_sections_are_out_of_order)
     expect_refusal(joined({kSetup, kSetup}), "out of order");
     expect_refusal(joined({kSetup, kModel, kModel}), "out of order");
     expect_refusal(joined({kSetup, kModel, kFrames, kPiece, kEnd}),
-                   "frame 0 takes piece 1 of model 0 from the queues, which is not in the "
+                   "frame 0 takes piece 1 of model 0 from the queues, but the piece is not in the "
                    "recording before it");
     expect_refusal(joined({kSetup, kModel, kPiece, kPiece}), "a piece is in the recording twice");
     expect_refusal(joined({kSetup, kModel, kPiece, kEnd}),
-                   "the end states 3 frames and 1 pieces, but 0 and 1 came before");
+                   "the end section states 3 frames and 1 piece, but the file has 0 and 1");
 }
 
 TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
@@ -294,35 +296,45 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kSetup, 18, {0}), "0 tools and 1 models; 1 to 16 and 1 to 256");
     expect_refusal(with_bytes(kSetup, 18, {17}), "17 tools");
     expect_refusal(with_bytes(kSetup, 21, {9}), "9 models");
-    expect_refusal(with_bytes(kSetup, 19, {6}), "6 objects and room for 5, and for 2 pairs");
+    expect_refusal(with_bytes(kSetup, 19, {6}), "6 objects and room for 5 objects and 2 pairs");
     expect_refusal(with_bytes(kSetup, 23, {0}), "room for 0");
     expect_refusal(with_bytes(kSetup, 23, {1, 0x10}), "room for 4097");
-    expect_refusal(with_bytes(kSetup, 25, {0}), "for 0 pairs");
-    expect_refusal(with_bytes(kSetup, 25, {65}), "for 65 pairs");
-    expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}), "tool 0 is not within"); // NaN.
-    expect_refusal(with_bytes(kSetup, kTorque + 6, {0xF8, 0x7F}), "tool 0 is not within");
+    expect_refusal(with_bytes(kSetup, 25, {0}), " and 0 pairs");
+    expect_refusal(with_bytes(kSetup, 25, {65}), " and 65 pairs");
+    expect_refusal(with_bytes(kSetup, kTool + 6, {0xF8, 0x7F}),
+                   "tool 0 has a value out of its range"); // NaN.
+    expect_refusal(with_bytes(kSetup, kTorque + 6, {0xF8, 0x7F}),
+                   "tool 0 has a value out of its range");
     expect_refusal(with_bytes(kSetup, kTorque - 1, {4}), "tool 0 has an unknown core");
     expect_refusal(with_bytes(kSetup, kAngular - 1, {4}), "tool 0 has an unknown core");
-    expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF8, 0x7F}), "tool 0 is not within");
-    expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF0, 0xBF}), "tool 0 is not within");
-    expect_refusal(with_bytes(kSetup, kSmooth + 6, {0xF8, 0x7F}), "tool 0 is not within");
-    expect_refusal(with_bytes(kSetup, kSmooth + 6, {0xF0, 0xBF}), "tool 0 is not within");
+    expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF8, 0x7F}),
+                   "tool 0 has a value out of its range");
+    expect_refusal(with_bytes(kSetup, kAngular + 6, {0xF0, 0xBF}),
+                   "tool 0 has a value out of its range");
+    expect_refusal(with_bytes(kSetup, kSmooth + 6, {0xF8, 0x7F}),
+                   "tool 0 has a value out of its range");
+    expect_refusal(with_bytes(kSetup, kSmooth + 6, {0xF0, 0xBF}),
+                   "tool 0 has a value out of its range");
     expect_refusal(with_bytes(kSetup, kCore, {9}), "tool 0 has an unknown core");
-    expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 doesn't come where it should");
-    expect_refusal(with_bytes(kSetup, kObject, {5}), "object 0 doesn't come where it should");
-    expect_refusal(with_bytes(kSetup, kObject + 1, {1}), "object 0 doesn't come where it should");
-    expect_refusal(with_bytes(kSetup, kSpec, {1}), "object 0 names model 1 of 1");
+    expect_refusal(with_bytes(kSetup, kObject, {1}), "object 0 is out of order");
+    expect_refusal(with_bytes(kSetup, kObject, {5}), "object 0 is out of order");
+    expect_refusal(with_bytes(kSetup, kObject + 1, {1}), "object 0 is out of order");
+    expect_refusal(with_bytes(kSetup, kSpec, {1}),
+                   "object 0 refers to model 1, but the model count is 1");
     for (const std::size_t value :
          {4U, 12U, 20U, 28U, 36U, 44U, 52U}) // NaN, then a negative number.
     {
-        const std::string refusal = "object 0 is not of more than 0 N/m";
+        const std::string refusal = "object 0 has a material out of its ranges";
         expect_refusal(with_bytes(kSetup, kSpec + value + 6, {0xF8, 0x7F}), refusal);
         expect_refusal(with_bytes(kSetup, kSpec + value + 6, {0xF0, 0xBF}), refusal);
     }
     expect_refusal(with_bytes(kSetup, kSpec + 20 + 6, {0xE8, 0x3F}), "0 to the static one");
-    expect_refusal(with_bytes(kSetup, kPose + 6, {0xF8, 0x7F}), "object 0 stands at a pose that");
-    expect_refusal(with_bytes(kSetup, kPose + 72 + 6, {0xF0, 0x7F}), "object 0 stands at a pose");
-    expect_refusal(with_bytes(kSetup, kPose + 96 + 6, {0, 0}), "object 0 stands at a pose");
+    expect_refusal(with_bytes(kSetup, kPose + 6, {0xF8, 0x7F}),
+                   "object 0 has a pose without a rotation");
+    expect_refusal(with_bytes(kSetup, kPose + 72 + 6, {0xF0, 0x7F}),
+                   "object 0 has a pose without a rotation");
+    expect_refusal(with_bytes(kSetup, kPose + 96 + 6, {0, 0}),
+                   "object 0 has a pose without a rotation");
     expect_refusal(
         with_section(kSetup,
                      [](auto& payload)
@@ -330,7 +342,7 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
                          payload[kCore] = std::byte{4};
                          payload.insert(payload.begin() + kCore + 1, {std::byte{1}, {}, {}, {}});
                      }),
-        "tool 0 names model 1 of 1");
+        "tool 0 refers to model 1, but the model count is 1");
     expect_refusal(with_section(kSetup,
                                 [](auto& payload)
                                 {
@@ -353,11 +365,12 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x20}), "slots; 1 to");
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x02}), "more than 4096 MiB");
     expect_refusal(with_bytes(kModel, 8, {1, 0}), "room for 1 faces; the base mesh alone has 8");
-    expect_refusal(with_bytes(kModel, 20, {2}), "the cache's switch is 2; 0 and 1 are allowed");
-    expect_refusal(with_bytes(kModel, 21, {0xFF, 0xFF, 0xFF}), "the model section has another");
+    expect_refusal(with_bytes(kModel, 20, {2}),
+                   "the switch of the cache is 2; 0 and 1 are allowed");
+    expect_refusal(with_bytes(kModel, 21, {0xFF, 0xFF, 0xFF}), "the model section has a size");
     expect_refusal(with_bytes(kModel, 25, {0}), "the model's header is damaged");
-    expect_refusal(with_bytes(kPiece, 0, {1}), "a piece is not a chunk or index page of one");
-    expect_refusal(with_bytes(kPiece, 2, {0xFF}), "a piece is not a chunk or index page of one");
+    expect_refusal(with_bytes(kPiece, 0, {1}), "a piece is neither a chunk or index page");
+    expect_refusal(with_bytes(kPiece, 2, {0xFF}), "a piece is neither a chunk or index page");
     expect_refusal(with_section(kPiece, [](auto& payload) { payload.resize(6); }),
                    "a piece has 0 bytes; 1 to 8448 are allowed");
     expect_refusal(with_section(kPiece, [](auto& payload) { payload.resize(9'000); }),
@@ -371,11 +384,13 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     constexpr std::size_t kFeel = 9 + kObjectSpecBytes - 4; // This change names no model.
     constexpr std::size_t kChanges = 1 + 9 + kObjectPoseBytes + kSceneChangeBytes + kFeel;
     constexpr std::size_t kSlot = 4 + 1 + 8 + kToolStateBytes + kChanges + kBudgetsBytes + 13;
-    expect_refusal(with_bytes(kFrames, kSlot, {4}), "frame 0 names slot 4 of 4");
+    expect_refusal(with_bytes(kFrames, kSlot, {4}),
+                   "frame 0 refers to slot 4, but the slot count is 4");
     expect_refusal(with_bytes(kFrames, kSlot - 5, {9}), "takes piece 1 of model 9 from the queues");
-    expect_refusal(with_bytes(kEnd, 0, {2}), "the end states 2 frames and 1 pieces, but 3 and 1");
+    expect_refusal(with_bytes(kEnd, 0, {2}),
+                   "the end section states 2 frames and 1 piece, but the file has 3 and 1");
     expect_refusal(with_section(kEnd, [](auto& payload) { payload.push_back({}); }),
-                   "the end section has another size than its content");
+                   "the end section has a size that differs from its content");
 }
 
 /// Recording of several sections of frames, with the start of its end section.
@@ -412,7 +427,7 @@ TEST(RecordingFile, that_was_cut_has_the_frames_up_to_its_last_whole_section)
             const auto sut = Recording::parse(std::span(bytes).first(length), "run.rec");
             ASSERT_TRUE(sut) << length << ": " << sut.error().text;
             EXPECT_EQ(sut.value().cut_at(), starts[section]);
-            EXPECT_NE(sut.value().missing().find("the file was cut: behind frame "),
+            EXPECT_NE(sut.value().missing().find("the file is incomplete: after frame "),
                       std::string::npos);
             EXPECT_TRUE(sut.value().frame_count() > before || length > starts[section]);
             before = sut.value().frame_count();
@@ -431,7 +446,7 @@ TEST(RecordingFile, that_was_cut_has_the_frames_up_to_its_last_whole_section)
     for (std::size_t section = 0; section < 3; ++section)
     {
         expect_refusal(std::span(bytes).first(starts[section]),
-                       "the file is cut short: no frame is whole");
+                       "the file is cut short: no frame is complete");
     }
 }
 
@@ -450,12 +465,12 @@ TEST(RecordingFile, whose_end_a_file_system_lost_is_cut_where_the_zeros_begin)
     }
     std::vector<std::byte> damaged = bytes;
     damaged[last + 100] ^= std::byte{1};
-    expect_refusal(damaged, "is damaged: its checksum does not fit");
+    expect_refusal(damaged, "is damaged: its checksum does not match");
     damaged.resize(end); // Also truncated: the complete part is not what it claims.
-    expect_refusal(damaged, "is damaged: its checksum does not fit");
+    expect_refusal(damaged, "is damaged: its checksum does not match");
     damaged = bytes;
     damaged[starts[3] + 7] = std::byte{0x7F}; // Length that no section has.
-    expect_refusal(damaged, "section of kind 4 says that it has 21");
+    expect_refusal(damaged, "section of kind 4 states a size of 21");
 }
 
 TEST(ToolCoreCoding, refuses_what_is_of_no_kind_or_out_of_range)

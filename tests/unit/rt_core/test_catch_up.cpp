@@ -15,9 +15,9 @@ constexpr double kRate_n_per_s = 50.0;
 constexpr double kMost_n = 10.0;
 constexpr double kStep_n = kRate_n_per_s * kPeriod_s;
 
-Vec3 next(CatchUp& sut, const Vec3& wanted_n, bool has_waited, double by_hand_n = 0.0)
+Vec3 next(CatchUp& sut, const Vec3& wanted_n, bool has_waited, double by_device_n = 0.0)
 {
-    return sut.next({wanted_n, by_hand_n, kMost_n, kRate_n_per_s, kPeriod_s, has_waited});
+    return sut.next({wanted_n, by_device_n, kMost_n, kRate_n_per_s, kPeriod_s, has_waited});
 }
 
 TEST(CatchUp, lets_any_force_through_to_the_last_bit_that_never_waited)

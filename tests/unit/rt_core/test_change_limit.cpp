@@ -40,8 +40,8 @@ public:
         last = {};
         last.push.force_n = wanted_n;
         last.push.stiffness_n_per_m = 500.0;
-        last.turn.force_n = wanted_nm;
-        last.turn.stiffness_n_per_m = 0.05;
+        last.torque.force_n = wanted_nm;
+        last.torque.stiffness_n_per_m = 0.05;
         last.causes = causes;
         has_acted = sut.hold(last, period);
         sut.follow(last, own_n, Vec3(0.0, 0.0, 0.0));
@@ -91,10 +91,10 @@ TEST(ChangeLimit, a_hand_that_moves_makes_its_own_change_in_any_direction)
     for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0)})
     {
         const Vec3 before_n = tool.last.push.force_n;
-        tool.period.hand_m += way;
+        tool.period.device_m += way;
         EXPECT_LT((tool.step(before_n + 2.0 * direction) - before_n - step_n * direction).norm(),
                   kTight);
-        tool.period.hand_m += way;
+        tool.period.device_m += way;
         const Vec3 within_n = tool.last.push.force_n + 0.99 * step_n * direction;
         EXPECT_EQ(tool.step(within_n), within_n);
         EXPECT_FALSE(tool.has_acted);
@@ -103,17 +103,17 @@ TEST(ChangeLimit, a_hand_that_moves_makes_its_own_change_in_any_direction)
 
 TEST(ChangeLimit, of_hand_and_objects_only_as_much_counts_as_is_believed)
 {
-    LimitedChange tool({.hand_speed_max_m_per_s = 0.4, .object_speed_max_m_per_s = 0.2});
-    tool.period.hand_m = Vec3(0.5, 0.0, 0.0);
+    LimitedChange tool({.device_speed_max_m_per_s = 0.4, .object_speed_max_m_per_s = 0.2});
+    tool.period.device_m = Vec3(0.5, 0.0, 0.0);
     EXPECT_NEAR(tool.step(Vec3(8, 0, 0)).x(), 500.0 * 0.4e-3 + kSlew_n, kTight);
     tool.period.object_way_m = 0.025;
     EXPECT_NEAR(tool.step(Vec3(8, 0, 0)).x(), 500.0 * 0.6e-3 + 2 * kSlew_n, kTight);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double before_n = tool.last.push.force_n.x();
     tool.period.object_way_m = 0.0;
-    tool.period.hand_m.y() = nan;
+    tool.period.device_m.y() = nan;
     EXPECT_NEAR(tool.step(Vec3(8, 0, 0)).x(), before_n + kSlew_n, kTight);
-    tool.period.hand_m.y() = 0.0;
+    tool.period.device_m.y() = 0.0;
     EXPECT_NEAR(tool.step(Vec3(8, 0, 0)).x(), before_n + 2 * kSlew_n, kTight) << "nor from there";
 }
 
@@ -126,7 +126,7 @@ TEST(ChangeLimit, a_hand_that_goes_along_with_an_object_counts_with_it_and_not_t
     double before_n = 0.0;
     for (const double share : {1.0, 0.0, 0.5, 2.0})
     {
-        tool.period.hand_m += share * way;
+        tool.period.device_m += share * way;
         const double beside_m = std::min(share, std::abs(share - 1.0)) * 3e-4;
         EXPECT_NEAR(tool.step(Vec3(8, 0, 0)).x() - before_n, 500.0 * (beside_m + 3e-4) + kSlew_n,
                     kTight)
@@ -177,14 +177,14 @@ TEST(ChangeLimit, torques_go_by_the_turn_and_by_the_way_at_the_arm)
     LimitedChange tool;
     const Vec3 wanted(0.0, 0.0, 0.5);
     static_cast<void>(tool.step(Vec3(0, 0, 0), wanted));
-    EXPECT_NEAR(tool.last.turn.force_n.z(), kSlew_nm, kTight);
-    EXPECT_TRUE(has_action(tool.last.turn.actions, ForceAction::change_limited));
+    EXPECT_NEAR(tool.last.torque.force_n.z(), kSlew_nm, kTight);
+    EXPECT_TRUE(has_action(tool.last.torque.actions, ForceAction::change_limited));
     EXPECT_FALSE(has_action(tool.last.push.actions, ForceAction::change_limited));
     tool.period.turned_rad = Vec3(0.02, 0.0, 0.0);
-    tool.period.hand_m = Vec3(0.0, 2e-4, 0.0);
-    tool.period.object_turn_rad = 0.01; // 0.1 mm at the arm.
+    tool.period.device_m = Vec3(0.0, 2e-4, 0.0);
+    tool.period.object_rotation_rad = 0.01; // 0.1 mm at the arm.
     const Vec3 pushed_n = tool.step(Vec3(8, 0, 0), wanted);
-    EXPECT_NEAR(tool.last.turn.force_n.z(), 2 * kSlew_nm + 0.05 * 0.02 + 500.0 * 0.01 * 3e-4,
+    EXPECT_NEAR(tool.last.torque.force_n.z(), 2 * kSlew_nm + 0.05 * 0.02 + 500.0 * 0.01 * 3e-4,
                 kTight);
     EXPECT_NEAR(pushed_n.x(), kSlew_n + 500.0 * (2e-4 + 0.01 * 0.02 + 1e-4), kTight);
 }

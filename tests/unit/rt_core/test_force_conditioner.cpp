@@ -42,7 +42,7 @@ ToolForce with_own(const CommandedForce& commanded, const ExternalForce& own)
 {
     ToolForce both;
     both.push = commanded.spring();
-    both.turn = commanded.spring();
+    both.torque = commanded.spring();
     add_external(both, own);
     return both;
 }
@@ -102,7 +102,7 @@ TEST(ExternalForce, without_one_the_request_is_as_it_was_and_in_the_air_its_spri
     ExternalForce own;
     own.torque_nm = Vec3(0, 0.2, 0);
     own.stiffness_nm_per_rad = 2.0;
-    const SpringForce torque = with_own(commanded, own).turn;
+    const SpringForce torque = with_own(commanded, own).torque;
     EXPECT_EQ(torque.stiffness_n_per_m, 2.0);
     EXPECT_NEAR(torque.stretch_m, 0.1, kRounding);
 }
@@ -434,9 +434,9 @@ void expect_gain(const CommandedWrench& commanded, double gain, ForceAction on_f
     WrenchConditioner sut(turning_setup());
     const ToolForce out = condition(sut, commanded);
     EXPECT_LT((out.push.force_n - gain * commanded.force.force_n).norm(), kRounding);
-    EXPECT_LT((out.turn.force_n - gain * commanded.torque.force_n).norm(), kRounding);
+    EXPECT_LT((out.torque.force_n - gain * commanded.torque.force_n).norm(), kRounding);
     EXPECT_EQ(out.push.actions, on_force);
-    EXPECT_EQ(out.turn.actions, on_torque);
+    EXPECT_EQ(out.torque.actions, on_torque);
 }
 
 } // namespace
@@ -494,7 +494,7 @@ TEST(WrenchConditioner, takes_of_the_damping_what_its_lever_makes_of_it_and_half
     setup.lever_max_m = 0.02;
     // Damping of 1e-3 N m s/rad: 1.8 N m/rad minus 0.9 x 2 x 4e-4 / T, and half of it for all
     // higher values.
-    for (const auto& [damping, cap_nm_per_rad] : {std::pair(1.0, 1.08), std::pair(1.9, 0.9)})
+    for (const auto& [damping, limit_nm_per_rad] : {std::pair(1.0, 1.08), std::pair(1.9, 0.9)})
     {
         WrenchConditioner sut(setup);
         CommandedWrench commanded = wrench(Vec3(0, 0, 0), Vec3(0, 0, 0), 100.0, 1.8);
@@ -502,7 +502,8 @@ TEST(WrenchConditioner, takes_of_the_damping_what_its_lever_makes_of_it_and_half
         static_cast<void>(condition(sut, commanded)); // The hand is in free air.
         commanded.force.force_n = Vec3(1, 0, 0);
         commanded.torque.force_n = Vec3(0, 0, 0.1);
-        EXPECT_NEAR(condition(sut, commanded).turn.force_n.z(), 0.1 * cap_nm_per_rad / 1.8, 1e-9);
+        EXPECT_NEAR(condition(sut, commanded).torque.force_n.z(), 0.1 * limit_nm_per_rad / 1.8,
+                    1e-9);
     }
 }
 
@@ -517,8 +518,8 @@ TEST(WrenchConditioner, makes_nothing_of_garbage_in_either)
             WrenchConditioner sut(turning_setup());
             const ToolForce out = condition(sut, commanded);
             EXPECT_EQ(out.push.force_n, Vec3(0, 0, 0));
-            EXPECT_EQ(out.turn.force_n, Vec3(0, 0, 0));
-            EXPECT_TRUE(has_action(out.push.actions | out.turn.actions, ForceAction::refused));
+            EXPECT_EQ(out.torque.force_n, Vec3(0, 0, 0));
+            EXPECT_TRUE(has_action(out.push.actions | out.torque.actions, ForceAction::refused));
         }
     }
 }
@@ -534,7 +535,7 @@ TEST(WrenchConditioner, leaves_the_force_alone_of_a_device_without_a_torque)
     {
         const ToolForce out = condition(sut, commanded);
         EXPECT_EQ(out.push.force_n, condition(point, commanded.force).force_n);
-        EXPECT_EQ(out.turn.force_n, Vec3(0, 0, 0));
+        EXPECT_EQ(out.torque.force_n, Vec3(0, 0, 0));
     }
 }
 

@@ -52,7 +52,7 @@ public:
         input.sample_time_ns += 1'000'000;
         ToolForce force;
         force.push.force_n = input.force_n;
-        force.turn.force_n = input.torque_nm;
+        force.torque.force_n = input.torque_nm;
         sut.step(force, input);
         return keep(force);
     }
@@ -83,7 +83,7 @@ public:
 private:
     const LetOut& keep(const ToolForce& force)
     {
-        last = {force.push.force_n, force.turn.force_n, force.state, force.causes};
+        last = {force.push.force_n, force.torque.force_n, force.state, force.causes};
         return last;
     }
 };
@@ -122,7 +122,7 @@ const Cause kCauses[] = {
     known<ForceOff::disconnect>("disconnect"),
     known<ForceOff::deadman>("deadman"),
     known<ForceOff::stale>("stale"),
-    known<ForceOff::host>("host"),
+    known<ForceOff::server>("server"),
     faulty<FrameFault::tool_stuck>("stuck", ForceOff::stale),
     faulty<FrameFault::tool_invalid>("invalid", ForceOff::garbage),
     faulty<FrameFault::tool_jumped>("jumped", ForceOff::garbage),
@@ -486,7 +486,7 @@ TEST(ForceFader, finds_the_speed_of_a_device_that_does_not_tell_it)
         tool.step();
         for (const std::uint32_t periods : {1U, 4U}) // Real time after a stall.
         {
-            tool.input.hand_m += Vec3(speed * kPeriod_s * periods, 0.0, 0.0);
+            tool.input.device_m += Vec3(speed * kPeriod_s * periods, 0.0, 0.0);
             EXPECT_EQ(has_cause(tool.step(periods).causes, ForceOff::velocity), speed > 1.0);
         }
     }
@@ -497,7 +497,7 @@ TEST(ForceFader, finds_the_speed_of_a_device_that_does_not_tell_it)
     {
         if (i % 4 == 3)
         {
-            tool.input.hand_m += Vec3(0.9 * 4 * kPeriod_s, 0.0, 0.0);
+            tool.input.device_m += Vec3(0.9 * 4 * kPeriod_s, 0.0, 0.0);
         }
         else
         {

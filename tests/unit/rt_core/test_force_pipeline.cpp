@@ -24,7 +24,7 @@ namespace tactus::test
 namespace
 {
 
-constexpr double kHandSpeed_m_per_s = 0.8;
+constexpr double kOperatorSpeed_m_per_s = 0.8;
 constexpr double kObjectSpeed_m_per_s = 0.5;
 
 /// Sphere, or a box of 1 cm, on this device.
@@ -36,7 +36,7 @@ PipelineSetup piped(const DeviceLimits& device, bool is_box = false)
     {
         tool.core = Box{Vec3(0.005, 0.005, 0.005)};
     }
-    PipelineSetup setup = pipeline_setup(tool, device, kPeriod_s, kHandSpeed_m_per_s);
+    PipelineSetup setup = pipeline_setup(tool, device, kPeriod_s, kOperatorSpeed_m_per_s);
     setup.change.object_speed_max_m_per_s = kObjectSpeed_m_per_s;
     return setup;
 }
@@ -116,31 +116,33 @@ public:
     void step(std::uint32_t frame)
     {
         const Vec3 last_n = tool_.sut.force().push.force_n;
-        const Vec3 last_nm = tool_.sut.force().turn.force_n;
+        const Vec3 last_nm = tool_.sut.force().torque.force_n;
         const ExternalForce last_own = tool_.own;
         happen();
         const ToolForce& now = tool_.step();
         const double way_m =
             std::min({hand_way_.norm(), (hand_way_ - tool_.output.carried_m).norm(),
-                      kHandSpeed_m_per_s * kPeriod_s});
+                      kOperatorSpeed_m_per_s * kPeriod_s});
         const double arm_m = is_box_ ? arm() : 0.0;
         const double moved_m =
-            std::min(tool_.output.object_way_m + arm_m * tool_.output.object_turn_rad,
+            std::min(tool_.output.object_way_m + arm_m * tool_.output.object_rotation_rad,
                      kObjectSpeed_m_per_s * kPeriod_s);
         const double stiffness = tool_.output.stiffness_n_per_m + tool_.own.stiffness_n_per_m;
-        const double most_n = stiffness * (way_m + arm_m * hand_turn_rad_ + moved_m) +
+        const double most_n = stiffness * (way_m + arm_m * hand_rotation_rad_ + moved_m) +
                               slew_ * device_.force_max_n + kRounding;
         const double angular =
             arm_m * arm_m * tool_.output.stiffness_n_per_m + tool_.own.stiffness_nm_per_rad;
-        const double most_nm = angular * hand_turn_rad_ + stiffness * arm_m * (way_m + moved_m) +
+        const double most_nm = angular * hand_rotation_rad_ +
+                               stiffness * arm_m * (way_m + moved_m) +
                                slew_ * device_.rotation.torque_max_nm + kRounding;
         check(frame, "force", now.push.force_n, last_n, last_own.force_n, most_n, now.causes);
-        check(frame, "torque", now.turn.force_n, last_nm, last_own.torque_nm, most_nm, now.causes);
+        check(frame, "torque", now.torque.force_n, last_nm, last_own.torque_nm, most_nm,
+              now.causes);
         EXPECT_LE(now.push.force_n.norm(), device_.force_max_n * (1.0 + kRounding)) << frame;
-        EXPECT_LE(now.turn.force_n.norm(), device_.rotation.torque_max_nm * (1.0 + kRounding))
+        EXPECT_LE(now.torque.force_n.norm(), device_.rotation.torque_max_nm * (1.0 + kRounding))
             << frame;
         const bool is_held =
-            has_action(now.push.actions | now.turn.actions, ForceAction::change_limited);
+            has_action(now.push.actions | now.torque.actions, ForceAction::change_limited);
         held += is_held ? 1U : 0U;
         felt += now.push.force_n.norm() > 0.1 ? 1U : 0U;
         run_ = is_held ? run_ + tool_.state.elapsed_periods : 0;
@@ -186,7 +188,7 @@ private:
         tool_.output.torque_nm += random_.in_cube(random_.one_in(20) ? 0.2 : 0.001);
         tool_.output.object_way_m =
             random_.one_in(10) ? random_.between(0.0, 0.03) : random_.between(0.0, 1e-4);
-        tool_.output.object_turn_rad = random_.one_in(10) ? random_.between(0.0, 0.1) : 0.0;
+        tool_.output.object_rotation_rad = random_.one_in(10) ? random_.between(0.0, 0.1) : 0.0;
         tool_.output.carried_m = random_.in_cube(2e-4);
         tool_.output.halted = random_.one_in(800);
         if (random_.one_in(50))
@@ -217,14 +219,14 @@ private:
         tool_.state.position_m += random_.in_cube(random_.one_in(30) ? 5e-3 : 2e-4);
         hand_way_ = tool_.state.position_m - before_m;
         const Vec3 turn = is_box_ ? random_.in_cube(0.01) : Vec3(0.0, 0.0, 0.0);
-        hand_turn_rad_ = turn.norm();
+        hand_rotation_rad_ = turn.norm();
         tool_.state.rotation = orthonormalised(turned_by(turn, tool_.state.rotation));
         tool_.output.proxy_m = tool_.state.position_m + random_.in_cube(0.002);
     }
     /// Sets causes of the loop, of the device and of invalid numbers in the frame.
     void spoil()
     {
-        constexpr std::array kCauses{ForceOff::stale, ForceOff::host, ForceOff::jump,
+        constexpr std::array kCauses{ForceOff::stale, ForceOff::server, ForceOff::jump,
                                      ForceOff::starved};
         const bool begins = random_.one_in(1'000);
         tool_.context.causes = begins               ? kCauses[random_.below(kCauses.size())]
@@ -250,7 +252,7 @@ private:
     Random& random_;
     PipedTool tool_;
     Vec3 hand_way_{0.0, 0.0, 0.0};
-    double hand_turn_rad_{0.0};
+    double hand_rotation_rad_{0.0};
     std::uint32_t run_{0};
 };
 
@@ -272,7 +274,7 @@ TEST(ForcePipeline, gives_no_force_to_a_hand_whose_rotation_is_none)
                 tool.state.rotation = rotation;
                 if (is_held)
                 {
-                    tool.device.hand = DevicePose{tool.state.position_m, rotation};
+                    tool.device.pose = DevicePose{tool.state.position_m, rotation};
                 }
                 const double before_n = tool.sent_n().norm();
                 EXPECT_TRUE(has_cause(tool.step().causes, ForceOff::garbage));
@@ -280,7 +282,7 @@ TEST(ForcePipeline, gives_no_force_to_a_hand_whose_rotation_is_none)
                 tool.steps(60);
                 EXPECT_EQ(tool.sent_n().norm(), 0.0);
                 tool.state.rotation = Mat3::Identity();
-                tool.device.hand.reset();
+                tool.device.pose.reset();
                 tool.steps(300);
                 EXPECT_GT(tool.sent_n().norm(), 1.0);
             }
@@ -504,10 +506,10 @@ TEST(ForcePipeline, tells_each_change_of_state_and_causes_once)
     PipedTool tool(piped(kOmegaClass));
     EXPECT_TRUE(tool.step().has_changed);
     EXPECT_FALSE(tool.step().has_changed);
-    tool.context.causes = ForceOff::host;
+    tool.context.causes = ForceOff::server;
     EXPECT_TRUE(tool.step().has_changed);
     EXPECT_FALSE(tool.step().has_changed);
-    tool.context.causes = ForceOff::host | ForceOff::stale;
+    tool.context.causes = ForceOff::server | ForceOff::stale;
     EXPECT_TRUE(tool.step().has_changed);
 }
 
@@ -523,7 +525,7 @@ TEST(ForcePipeline, beside_a_load_the_force_is_within_the_device_and_holds_the_l
         tool.press(i % 200 < 100 ? 0.02 : 0.002);
         const ToolForce& force = tool.step();
         EXPECT_LE((force.push.force_n + force.load_n).norm(), 12.0 + 1e-9) << i;
-        const double moved_m = i % 100 == 0 ? kHandSpeed_m_per_s * kPeriod_s : 0.0;
+        const double moved_m = i % 100 == 0 ? kOperatorSpeed_m_per_s * kPeriod_s : 0.0;
         // While the payload force rises, the rest falls with its ramp.
         const double load_n = weight_n * kPeriod_s / kRiseTime_s;
         EXPECT_LE((force.push.force_n - last_n).norm(), 500.0 * moved_m + 0.12 + load_n + 1e-9)

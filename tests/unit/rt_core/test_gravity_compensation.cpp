@@ -40,11 +40,11 @@ ToolForce carry(GravityCompensation& sut, const CarryInput& input)
 {
     ToolForce force;
     force.push.force_n = input.force_n;
-    force.turn.force_n = input.torque_nm;
+    force.torque.force_n = input.torque_nm;
     force.state = SafetyState::force;
     force.causes = input.causes;
     ToolPeriod period;
-    period.hand_rotation = input.rotation;
+    period.device_rotation = input.rotation;
     period.force_left = input.force_left;
     period.elapsed_s = kPeriod_s;
     sut.carry(force, period);
@@ -96,7 +96,7 @@ TEST(GravityCompensation, without_a_load_changes_no_bit)
     input.torque_nm = Vec3(0.1, 0.2, 0.3);
     const ToolForce sent = carry(sut, input);
     EXPECT_EQ(sent.push.force_n, input.force_n);
-    EXPECT_EQ(sent.turn.force_n, input.torque_nm);
+    EXPECT_EQ(sent.torque.force_n, input.torque_nm);
     EXPECT_EQ(sent.load_n, Vec3(0.0, 0.0, 0.0));
 }
 
@@ -105,7 +105,7 @@ TEST(GravityCompensation, holds_while_the_scene_is_at_fault_and_lets_go_with_the
     for (std::size_t bit = 0; bit < kForceOffs; ++bit)
     {
         const auto cause = static_cast<ForceOff>(1U << bit);
-        const bool is_scene = cause == ForceOff::host || cause == ForceOff::stall ||
+        const bool is_scene = cause == ForceOff::server || cause == ForceOff::stall ||
                               cause == ForceOff::jump || cause == ForceOff::halted ||
                               cause == ForceOff::over_constrained || cause == ForceOff::clutch ||
                               cause == ForceOff::starved || cause == ForceOff::growth;
@@ -186,12 +186,12 @@ TEST(GravityCompensation, both_together_stay_within_the_device_by_one_gain)
         EXPECT_NEAR(sent.load_n.norm(), hammer_load().weight_n(), kCarryRounding)
             << "the load goes out whole";
         const double force_n = (sent.push.force_n + sent.load_n).norm();
-        const double torque_nm = (sent.turn.force_n + sent.load_nm).norm();
+        const double torque_nm = (sent.torque.force_n + sent.load_nm).norm();
         EXPECT_LE(force_n, kCarrier.force_max_n + kCarryRounding);
         EXPECT_LE(torque_nm, kCarrier.torque_max_nm + kCarryRounding);
         const double gain = sent.push.force_n.norm() / input.force_n.norm();
         EXPECT_LT((sent.push.force_n - gain * input.force_n).norm(), kCarryRounding);
-        EXPECT_LT((sent.turn.force_n - gain * input.torque_nm).norm(), kCarryRounding);
+        EXPECT_LT((sent.torque.force_n - gain * input.torque_nm).norm(), kCarryRounding);
         EXPECT_LE(gain, 1.0 + kCarryRounding);
         if (gain < 1.0 - 1e-9)
         {

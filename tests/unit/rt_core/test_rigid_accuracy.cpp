@@ -5,7 +5,7 @@
 /// (facet angle) x force, and for a torque times its lever. The triangles are exact, so there is no
 /// quantum.
 
-#include "tests/unit/rt_core/body_rig.hpp"
+#include "tests/unit/rt_core/rigid_tool_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -65,12 +65,12 @@ TEST(RigidAccuracy, a_box_on_an_edge_is_pushed_along_the_edges_normal_through_wh
     const Vec3 lever = Vec3(0, 0, 0) - output.proxy_m;
     EXPECT_LE((output.torque_nm - lever.cross(output.force_n)).norm(),
               2e-3 * output.force_n.norm() * kOff);
-    const double arm = kHalf.norm() + kBodyRadius;
-    EXPECT_LE((output.torque_nm -
-               kBodyStiffness * arm * arm * turned_between(Mat3::Identity(), output.proxy_rotation))
+    const double arm = kHalf.norm() + kRigidRadius;
+    EXPECT_LE((output.torque_nm - kRigidStiffness * arm * arm *
+                                      turned_between(Mat3::Identity(), output.proxy_rotation))
                   .norm(),
               0.01 * output.torque_nm.norm());
-    EXPECT_LE((output.force_n - kBodyStiffness * (output.proxy_m - hand)).norm(),
+    EXPECT_LE((output.force_n - kRigidStiffness * (output.proxy_m - hand)).norm(),
               0.01 * output.force_n.norm());
 }
 
@@ -89,7 +89,7 @@ TEST(RigidAccuracy, a_peg_with_a_fifth_of_a_millimetre_of_room_is_centred_by_its
         const ToolOutput output = rig.settle(aside, Mat3::Identity(), 600);
 
         // The peg is one clearance off the axis: the hand is 3 mm away, the peg 0.2 mm.
-        const double force_n = kBodyStiffness * (0.003 - kRoom);
+        const double force_n = kRigidStiffness * (0.003 - kRoom);
         const double facet = 2.0 * kPi / kFacets;
         EXPECT_LE((output.force_n + force_n * aside.normalized()).norm(), facet * force_n)
             << heading;
@@ -101,7 +101,7 @@ TEST(RigidAccuracy, a_peg_with_a_fifth_of_a_millimetre_of_room_is_centred_by_its
     const ToolOutput output = rig.settle(Vec3(0, 0, 0), tilted, 600);
     const double most_rad = kRoom / 0.02;
     const double arm = 0.02 + kPeg;
-    const double torque_nm = kBodyStiffness * arm * arm * (0.1 - most_rad);
+    const double torque_nm = kRigidStiffness * arm * arm * (0.1 - most_rad);
     EXPECT_NEAR(output.torque_nm.norm(), torque_nm, 0.02 * torque_nm);
     EXPECT_LE(output.force_n.norm(), 0.02 * torque_nm / 0.02);
     EXPECT_LT(output.torque_nm.y(), 0.0) << "back towards the axis";
@@ -146,7 +146,7 @@ TEST(RigidAccuracy, force_and_torque_change_by_no_more_than_the_stiffness_times_
     rig.takes_steps = true;
     rig.objects[0].pose.rotation = turn(Vec3(0, 1, 0), kPi / 2.0);
     rig.settle(Vec3(0, 0, 0.09), Mat3::Identity(), 50);
-    const double arm = kHalf.norm() + kBodyRadius;
+    const double arm = kHalf.norm() + kRigidRadius;
     const double facet = 2.0 * kPi / kFacets;
     ToolOutput last;
     Vec3 last_hand(0, 0, 0);
@@ -169,10 +169,10 @@ TEST(RigidAccuracy, force_and_torque_change_by_no_more_than_the_stiffness_times_
                                         last_place.rotation, place.rotation);
             // Between facets: its angle, and the lever that changes by its width.
             const double facet_n = facet * output.force_n.norm();
-            ASSERT_LE((output.force_n - last.force_n).norm(), kBodyStiffness * moved + facet_n)
+            ASSERT_LE((output.force_n - last.force_n).norm(), kRigidStiffness * moved + facet_n)
                 << i;
             ASSERT_LE((output.torque_nm - last.torque_nm).norm(),
-                      arm * (kBodyStiffness * moved + facet_n) + 0.05 * facet_n)
+                      arm * (kRigidStiffness * moved + facet_n) + 0.05 * facet_n)
                 << i;
             ++contacts;
         }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/force/angular_stiffness.hpp"
-#include "tests/unit/rt_core/body_rig.hpp"
+#include "tests/shared/trial_length.hpp"
+#include "tests/unit/rt_core/rigid_tool_rig.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -73,7 +74,7 @@ Rig box_on_plane(const Material& material)
 {
     Rig rig = on_plane(Box{kHalf}, material);
     rig.settle(Vec3(0, 0, 0.05));
-    rig.settle(Vec3(0, 0, kHalf.z() + kBodyRadius - 1e-5));
+    rig.settle(Vec3(0, 0, kHalf.z() + kRigidRadius - 1e-5));
     return rig;
 }
 
@@ -90,8 +91,8 @@ TEST(RigidProxy, comes_to_rest_on_what_held_it_where_it_is_told_of_one_point_at_
     {
         const Vec3 before = rig.sut.place().translation_m;
         const ToolOutput output = rig.step(Vec3(0, 0, -0.004), tilted);
-        ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kBodyRadius) << i;
-        ASSERT_NEAR(rig.distance(), kBodyRadius, 0.01 * kBodyRadius) << i;
+        ASSERT_LE((output.proxy_m - before).norm(), 1e-4 * kRigidRadius) << i;
+        ASSERT_NEAR(rig.distance(), kRigidRadius, 0.01 * kRigidRadius) << i;
     }
 }
 
@@ -109,7 +110,7 @@ TEST(RigidProxy, slides_and_turns_over_the_seams_of_a_mesh_without_drag)
         {
             Rig rig(tool_of(core), {{flat_mesh(cell_m), {}, {}}});
             rig.takes_steps = true;
-            const double pressed_m = height_m + kBodyRadius - 0.002; // 1 N.
+            const double pressed_m = height_m + kRigidRadius - 0.002; // 1 N.
             rig.settle(Vec3(-0.02, 0, 0.05));
             rig.settle(Vec3(-0.02, 0, pressed_m));
             for (int frame = 0; frame < 200; ++frame)
@@ -120,7 +121,7 @@ TEST(RigidProxy, slides_and_turns_over_the_seams_of_a_mesh_without_drag)
                 { return std::to_string(cell_m) + ", " + std::to_string(frame); };
                 ASSERT_NEAR(output.force_n.z(), 1.0, 5e-3) << told();
                 ASSERT_LE(output.force_n.head<2>().norm(), 5e-3) << told();
-                ASSERT_GE(rig.distance(), kBodyRadius * (1.0 - 1e-6)) << told();
+                ASSERT_GE(rig.distance(), kRigidRadius * (1.0 - 1e-6)) << told();
             }
         }
     }
@@ -144,13 +145,13 @@ TEST(RigidProxy, pressed_at_an_angle_turns_back_what_the_surface_turns)
         EXPECT_LE(std::abs(output.torque_nm.x()), 1e-4);
         EXPECT_LE(std::abs(output.torque_nm.y()),
                   output.force_n.z() * (kHalf.x() + kHalf.z()) + 1e-6);
-        EXPECT_NEAR(rig.distance(), kBodyRadius, 1e-3 * kBodyRadius);
+        EXPECT_NEAR(rig.distance(), kRigidRadius, 1e-3 * kRigidRadius);
         // The coupling's two springs: torque and force determine the proxy's pose.
-        const double arm = kHalf.norm() + kBodyRadius;
+        const double arm = kHalf.norm() + kRigidRadius;
         const Eigen::AngleAxisd held(output.proxy_rotation * tilted.transpose());
-        const Vec3 torque = kBodyStiffness * arm * arm * held.angle() * held.axis();
+        const Vec3 torque = kRigidStiffness * arm * arm * held.angle() * held.axis();
         EXPECT_LE((output.torque_nm - torque).norm(), 0.02 * torque.norm() + 1e-6) << angle;
-        EXPECT_LE((output.force_n - kBodyStiffness * (output.proxy_m - Vec3(0, 0, -0.01))).norm(),
+        EXPECT_LE((output.force_n - kRigidStiffness * (output.proxy_m - Vec3(0, 0, -0.01))).norm(),
                   0.02 * output.force_n.norm());
     }
 }
@@ -196,8 +197,8 @@ TEST(RigidProxy, never_pulls_and_its_core_never_crosses_a_surface)
         Mat3 rotation = Mat3::Identity();
         Vec3 aim = goal;
         Vec3 axis(0, 0, 1);
-        int contacts = 0;
-        for (int i = 0; i < 6'000; ++i)
+        std::uint32_t contacts = 0;
+        for (std::uint32_t i = 0; i < trial_length(6'000); ++i)
         {
             if (random.one_in(50))
             {
@@ -221,9 +222,9 @@ TEST(RigidProxy, never_pulls_and_its_core_never_crosses_a_surface)
                         Eigen::AngleAxisd(output.proxy_rotation * rotation.transpose()).axis()),
                 -1e-2)
                 << i << ": it gave energy away";
-            contacts += output.in_contact ? 1 : 0;
+            contacts += output.in_contact ? 1U : 0U;
         }
-        EXPECT_GT(contacts, 1'000);
+        EXPECT_GT(contacts, trial_length(1'000));
     }
 }
 
@@ -236,11 +237,11 @@ TEST(RigidProxy, between_brackets_goes_no_farther_than_they_allow)
     for (int i = 0; i < 100; ++i)
     {
         const Vec3 before = rig.sut.place().translation_m;
-        const double room = std::max(0.0, 0.5 * rig.distance() - kBodyRadius);
+        const double room = std::max(0.0, 0.5 * rig.distance() - kRigidRadius);
         const ToolOutput output = rig.step(Vec3(0, 0, -0.05));
         ASSERT_LE((output.proxy_m - before).norm(), room + 1e-15) << i;
     }
-    EXPECT_GT(rig.distance(), kBodyRadius);
+    EXPECT_GT(rig.distance(), kRigidRadius);
 }
 
 TEST(RigidProxy, that_starts_across_a_surface_is_where_the_hand_is_until_it_is_clear)
@@ -352,7 +353,7 @@ private:
 public:
     RigidProxy sut{tool_of(Segment{{0, 0, -0.01}, {0, 0, 0.01}}), planes_};
     bool is_truncated{false};
-    double lower_m{kBodyRadius}; ///< Reported lower bound of all distances.
+    double lower_m{kRigidRadius}; ///< Reported lower bound of all distances.
 };
 
 /// Direction i of `count` on a cone, none between others.
@@ -371,8 +372,8 @@ TEST(RigidProxy, remembers_as_many_holds_as_the_limit_and_says_when_it_forgets_o
     {
         const Vec3 normal = on_cone(i, kMaxHolds + 1);
         const ToolOutput output =
-            sphere.step({sphere.contact(normal, kBodyRadius)},
-                        sphere.sut.place().translation_m - kBodyRadius * normal);
+            sphere.step({sphere.contact(normal, kRigidRadius)},
+                        sphere.sut.place().translation_m - kRigidRadius * normal);
         ASSERT_TRUE(output.in_contact) << i;
         EXPECT_EQ(sphere.sut.exceeds_capacity(), i == kMaxHolds) << i;
     }
@@ -387,16 +388,16 @@ TEST(RigidProxy, takes_as_many_planes_as_the_limit_and_says_when_it_leaves_one_o
         std::vector<Contact> contacts;
         for (std::size_t i = 1; i < count; ++i)
         {
-            contacts.push_back(sphere.contact(on_cone(i, count), 1.5 * kBodyRadius));
+            contacts.push_back(sphere.contact(on_cone(i, count), 1.5 * kRigidRadius));
         }
         // Holding contacts are kept in any order of reports: then only one more is added from those
         // that held.
         static_cast<void>(
-            sphere.step({sphere.contact(on_cone(0, count), kBodyRadius)},
-                        sphere.sut.place().translation_m - kBodyRadius * on_cone(0, count)));
+            sphere.step({sphere.contact(on_cone(0, count), kRigidRadius)},
+                        sphere.sut.place().translation_m - kRigidRadius * on_cone(0, count)));
         EXPECT_FALSE(sphere.sut.exceeds_capacity());
         const ToolOutput output = sphere.step(contacts, sphere.sut.place().translation_m -
-                                                            kBodyRadius * on_cone(0, count));
+                                                            kRigidRadius * on_cone(0, count));
         EXPECT_TRUE(output.in_contact);
         EXPECT_EQ(sphere.sut.exceeds_capacity(), count > kMaxHalfSpaces);
     }
@@ -421,9 +422,9 @@ TEST(RigidProxy, that_is_not_told_of_all_touches_fades_where_its_radius_is_all_b
             RegionSphere sphere;
             static_cast<void>(sphere.step({}, Vec3(0, 0, 0)));
             sphere.is_truncated = is_truncated;
-            sphere.lower_m = left * kBodyRadius;
+            sphere.lower_m = left * kRigidRadius;
             const ToolOutput output =
-                sphere.step({sphere.contact(Vec3(0, 0, 1), kBodyRadius)}, Vec3(0, 0, -0.1));
+                sphere.step({sphere.contact(Vec3(0, 0, 1), kRigidRadius)}, Vec3(0, 0, -0.1));
             EXPECT_TRUE(output.in_contact);
             EXPECT_EQ(output.over_constrained, is_truncated && left < 0.1) << left;
         }
@@ -455,7 +456,7 @@ TEST(RigidProxy, of_two_objects_each_pushes_by_its_own_stiffness)
 
     const Vec3 between = output.proxy_m - Vec3(-0.003, 0, 0.007);
     EXPECT_NEAR(output.force_n.x(), 100.0 * between.x(), 1e-3);
-    EXPECT_NEAR(output.force_n.z(), kBodyStiffness * between.z(), 1e-2);
+    EXPECT_NEAR(output.force_n.z(), kRigidStiffness * between.z(), 1e-2);
 }
 
 TEST(RigidProxy, the_angular_stiffness_is_what_is_set)
@@ -476,11 +477,11 @@ TEST(RigidProxy, the_angular_stiffness_is_what_is_set)
         EXPECT_LE((output.torque_nm - set * held.angle() * held.axis()).norm(),
                   0.02 * output.torque_nm.norm())
             << set;
-        EXPECT_NEAR(rig.distance(), kBodyRadius, 2e-3 * kBodyRadius);
+        EXPECT_NEAR(rig.distance(), kRigidRadius, 2e-3 * kRigidRadius);
     }
     ToolSpec unset = tool_of(Box{kHalf});
-    const double arm = kHalf.norm() + kBodyRadius;
-    EXPECT_NEAR(angular_stiffness_nm_per_rad(unset), kBodyStiffness * arm * arm, 1e-12);
+    const double arm = kHalf.norm() + kRigidRadius;
+    EXPECT_NEAR(angular_stiffness_nm_per_rad(unset), kRigidStiffness * arm * arm, 1e-12);
     EXPECT_NEAR(angular_lever_m(unset), arm, 1e-12);
     unset.core = PointCore{};
     EXPECT_EQ(angular_stiffness_nm_per_rad(unset), 0.0);
@@ -500,7 +501,7 @@ TEST(RigidProxy, damping_brakes_a_turn_and_an_object_that_comes_nearer)
     EXPECT_LT(rig.step(hand).torque_nm.y(), -1e-4);
     hand.spin_rad_per_s = Vec3(0, 0, 0);
     rig.objects[0].pose.translation_m.z() += 1e-5;
-    EXPECT_NEAR(rig.step(hand).force_n.z(), still_n + 8.0 * 0.01 + kBodyStiffness * 1e-5, 0.02);
+    EXPECT_NEAR(rig.step(hand).force_n.z(), still_n + 8.0 * 0.01 + kRigidStiffness * 1e-5, 0.02);
 }
 
 TEST(RigidProxy, a_twist_about_the_normal_sticks_and_slides_by_its_torque)
@@ -509,13 +510,13 @@ TEST(RigidProxy, a_twist_about_the_normal_sticks_and_slides_by_its_torque)
     material.static_friction = 0.4;
     material.dynamic_friction = 0.4;
     Rig rig = box_on_plane(material);
-    const Vec3 hand(0, 0, kHalf.z() + kBodyRadius - 0.004);
+    const Vec3 hand(0, 0, kHalf.z() + kRigidRadius - 0.004);
     rig.settle(hand, Mat3::Identity(), 100);
     // The friction's torque of four equally loaded corners is at most this.
     const double lever = std::hypot(kHalf.x(), kHalf.y());
-    const double most_nm = 0.4 * kBodyStiffness * 0.004 * lever;
-    const double arm = kHalf.norm() + kBodyRadius;
-    const double slip_rad = most_nm / (kBodyStiffness * arm * arm);
+    const double most_nm = 0.4 * kRigidStiffness * 0.004 * lever;
+    const double arm = kHalf.norm() + kRigidRadius;
+    const double slip_rad = most_nm / (kRigidStiffness * arm * arm);
 
     rig.settle(hand, turn(Vec3(0, 0, 1), 0.9 * slip_rad));
     const Mat3 stuck = rig.sut.place().rotation;
@@ -532,7 +533,7 @@ TEST(RigidProxy, an_object_that_turns_takes_along_what_sticks_to_it)
     material.static_friction = 0.8;
     material.dynamic_friction = 0.8;
     Rig rig = box_on_plane(material);
-    const Vec3 hand(0, 0, kHalf.z() + kBodyRadius - 0.004);
+    const Vec3 hand(0, 0, kHalf.z() + kRigidRadius - 0.004);
     rig.settle(hand, Mat3::Identity(), 100);
     const Mat3 before = rig.sut.place().rotation;
     for (int i = 0; i < 100; ++i)

@@ -74,7 +74,7 @@ public:
         , name_(std::move(name))
         , scene_(std::move(scene))
         , domain_(dds::Domain::join(domain).value())
-        , epoch_(dds::host_epoch_of(domain_.participants().own()))
+        , epoch_(dds::server_epoch_of(domain_.participants().own()))
         , catalogue_(std::move(make_writer(domain_, dds::Topic::catalogue, "")).value())
         , wanted_(std::move(make_reader(domain_, dds::Topic::wanted, dds::kAnyPartition)).value())
     {
@@ -91,7 +91,7 @@ public:
             wanted_.handle, 100,
             [this](const tactus_v5_Wanted& sample, const dds_sample_info_t& info)
             {
-                if (info.valid_data && sample.host_epoch == epoch_)
+                if (info.valid_data && sample.server_epoch == epoch_)
                 {
                     answer(sample);
                 }
@@ -105,7 +105,7 @@ private:
     void announce()
     {
         tactus_v5_CatalogueEntry entry = {};
-        entry.host_epoch = epoch_;
+        entry.server_epoch = epoch_;
         name_.copy(static_cast<char*>(entry.name), kMaxNameBytes);
         scene_.copy(static_cast<char*>(entry.scene), kMaxNameBytes);
         const ContentHash hash = model_hash(model_.header);
@@ -155,7 +155,7 @@ private:
             {model_hash(model_.header), 0, static_cast<std::uint32_t>(key.kind), key.number},
             bytes);
         tactus_v5_Pieces sample = {};
-        sample.host_epoch = epoch_;
+        sample.server_epoch = epoch_;
         sample.sent = ++sent_;
         const auto count = static_cast<std::uint32_t>(payload.size());
         sample.payload = {count, count, reinterpret_cast<std::uint8_t*>(payload.data()), false};

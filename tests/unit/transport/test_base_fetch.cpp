@@ -41,8 +41,8 @@ public:
     {
         return loopback_.bytes_received();
     }
-    void lose_host() { loopback_.lose_host(); }
-    void regain_host() { loopback_.regain_host(); }
+    void lose_server() { loopback_.lose_server(); }
+    void regain_server() { loopback_.regain_server(); }
 
     std::size_t asked{0};
 
@@ -97,22 +97,23 @@ TEST(BaseFetch, refuses_a_base_mesh_that_the_header_does_not_name)
     Waiting sut({.damage = 1.0});
     const auto refusal = bring_bases(sut.served, kPatience);
     ASSERT_TRUE(refusal);
-    EXPECT_EQ(refusal->text, "model 'tiny' has a base mesh of another hash than its header names");
+    EXPECT_EQ(refusal->text,
+              "model 'tiny' has a base mesh that does not match the hash in its header");
     EXPECT_TRUE(sut.served[0].base.empty());
 }
 
-TEST(BaseFetch, waits_for_a_host_and_asks_the_next_one)
+TEST(BaseFetch, waits_for_a_server_and_asks_the_next_one)
 {
     Waiting sut({.delay_polls_min = 3, .delay_polls_max = 3});
     BaseFetch fetch(sut.served[0]);
     EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);
-    sut.link->lose_host(); // Drops everything in transit.
+    sut.link->lose_server(); // Drops everything in transit.
     for (int i = 0; i < 20; ++i)
     {
         EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);
     }
     EXPECT_EQ(sut.link->asked, parts_of(sut.model.base.size()));
-    sut.link->regain_host();
+    sut.link->regain_server();
     for (int i = 0; i < 1'000 && fetch.step() != BaseFetch::State::done; ++i)
     {
     }
@@ -123,11 +124,11 @@ TEST(BaseFetch, waits_for_a_host_and_asks_the_next_one)
 TEST(BaseFetch, ends_when_it_may_not_go_on_and_says_what_is_missing)
 {
     Waiting sut;
-    sut.link->lose_host();
+    sut.link->lose_server();
     int rounds = 0;
     const auto refusal = bring_bases(sut.served, kPatience, [&] { return ++rounds < 3; });
     ASSERT_TRUE(refusal);
-    EXPECT_TRUE(refusal->text.starts_with("the base mesh of model 'tiny' did not come (waited "))
+    EXPECT_TRUE(refusal->text.starts_with("the base mesh of model 'tiny' did not arrive (waited "))
         << refusal->text;
     EXPECT_TRUE(bring_bases(sut.served, std::chrono::milliseconds(0)));
 }

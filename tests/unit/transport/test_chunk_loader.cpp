@@ -176,7 +176,7 @@ TEST(ChunkLoader, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_se
         ASSERT_TRUE(road.request_base(1, 1));
         if (is_gone)
         {
-            road.link.lose_host();
+            road.link.lose_server();
         }
         road.step();
         const std::int64_t requested_ns = road.now_ns;
@@ -192,11 +192,11 @@ TEST(ChunkLoader, gives_the_room_of_a_base_mesh_back_that_does_not_come_for_a_se
         EXPECT_EQ(event.slot, 0U);
         EXPECT_EQ(road.sut.counters().overdue, 1U);
         EXPECT_FALSE(road.side.linker.has_base());
-        EXPECT_NE(road.lines.at(0).find("base mesh 0 doesn't come"), std::string::npos)
+        EXPECT_NE(road.lines.at(0).find("base mesh 0 has not arrived"), std::string::npos)
             << road.lines.at(0);
         // A request reserves nothing until the haptic thread confirms, and older ones never do, for
         // any generation.
-        road.link.lose_host();
+        road.link.lose_server();
         ASSERT_TRUE(road.side.request(kBase, 900));
         EXPECT_TRUE(road.is_silent(3'000));
         ASSERT_TRUE(road.request_base(1'000, 999));
@@ -241,7 +241,7 @@ TEST(ChunkLoader, keeps_what_came_of_a_base_mesh_whose_room_was_given_back)
     const std::uint64_t before = road.sut.counters().pieces;
     ASSERT_GT(before, 0U);
     ASSERT_LT(before, parts);
-    road.link.lose_host();
+    road.link.lose_server();
     QueueEvent event;
     while (!road.side.queues.arrived.try_pop(event))
     {
@@ -249,7 +249,7 @@ TEST(ChunkLoader, keeps_what_came_of_a_base_mesh_whose_room_was_given_back)
     }
     ASSERT_EQ(event.kind, QueueEventKind::base_back);
     ASSERT_TRUE(road.side.queues.freed.try_push({ContentKind::base, 0, 1'000}));
-    road.link.regain_host();
+    road.link.regain_server();
     for (std::uint32_t generation = 1'000; !road.side.linker.has_base(); ++generation)
     {
         ASSERT_LT(generation, 1'200U);
@@ -349,8 +349,8 @@ TEST(ChunkLoader, refuses_a_damaged_piece_with_nothing_changed_and_asks_when_req
     EXPECT_EQ(road.sut.counters().asked_again, 1U);
     EXPECT_EQ(road.sut.free_index_pages(), 2U);
     ASSERT_FALSE(road.lines.empty());
-    EXPECT_EQ(road.lines[0], "model 'road': index page 0 does not have the hash that the header "
-                             "names; refused, nothing changed");
+    EXPECT_EQ(road.lines[0], "model 'road': index page 0 does not match its hash in the header; "
+                             "refused, nothing changed");
 }
 
 TEST(ChunkLoader, refuses_a_sound_piece_under_another_one_s_key)
@@ -527,14 +527,14 @@ TEST(ChunkLoader, tells_once_of_a_piece_that_does_not_come_for_a_second_and_when
     road.request_piece(550);
     EXPECT_EQ(road.overdue(), 1U);
     EXPECT_TRUE(road.sut.is_starved());
-    EXPECT_EQ(road.lines, std::vector<std::string>{
-                              "model 'road': index page 0 doesn't come; the surface there stays "
-                              "coarse"});
+    EXPECT_EQ(road.lines,
+              std::vector<std::string>{
+                  "model 'road': index page 0 has not arrived; the surface there stays coarse"});
     EXPECT_TRUE(road.comes(index_key(0), 100));
     EXPECT_FALSE(road.sut.is_starved());
     EXPECT_EQ(road.sut.counters().overdue_came, 1U);
     ASSERT_EQ(road.lines.size(), 2U);
-    EXPECT_EQ(road.lines[1], "model 'road': index page 0 has come after all, after 1.6 s");
+    EXPECT_EQ(road.lines[1], "model 'road': index page 0 has arrived late, after 1.6 s");
 }
 
 TEST(ChunkLoader, is_not_starved_any_more_of_what_nobody_requests)
@@ -556,28 +556,28 @@ TEST(ChunkLoader, misses_nothing_that_was_not_wanted_meanwhile_or_that_nobody_co
     OverdueRoad forgotten(model);
     forgotten.request_piece(1'400, 1'200); // 1.2 s without a request.
     EXPECT_EQ(forgotten.overdue(), 0U);
-    OverdueRoad without_host(model);
-    without_host.request_piece(600);
-    without_host.link.lose_host();
-    without_host.request_piece(2'000);
-    without_host.link.regain_host();
-    without_host.request_piece(900);
-    EXPECT_EQ(without_host.overdue(), 0U);
-    without_host.request_piece(300);
-    EXPECT_EQ(without_host.overdue(), 1U);
-    EXPECT_EQ(without_host.sut.counters().overdue_came, 0U);
+    OverdueRoad without_server(model);
+    without_server.request_piece(600);
+    without_server.link.lose_server();
+    without_server.request_piece(2'000);
+    without_server.link.regain_server();
+    without_server.request_piece(900);
+    EXPECT_EQ(without_server.overdue(), 0U);
+    without_server.request_piece(300);
+    EXPECT_EQ(without_server.overdue(), 1U);
+    EXPECT_EQ(without_server.sut.counters().overdue_came, 0U);
 }
 
-TEST(ChunkLoader, keeps_requests_while_the_host_is_gone_and_asks_the_next_one_at_once)
+TEST(ChunkLoader, keeps_requests_while_the_server_is_gone_and_asks_the_next_one_at_once)
 {
     const TinyModel model = make_tiny_model({});
     Road road(model, {.delay_polls_min = 1, .delay_polls_max = 1});
     ASSERT_TRUE(road.side.request(index_key(0)));
     road.step();
-    road.link.lose_host();
+    road.link.lose_server();
     EXPECT_FALSE(road.comes(index_key(0), 10'000));
     EXPECT_EQ(road.sut.counters().asked_again, 0U);
-    road.link.regain_host();
+    road.link.regain_server();
     EXPECT_TRUE(road.comes(index_key(0), 2));
 }
 

@@ -67,7 +67,7 @@ TEST(ModelName, a_selector_is_a_name_and_perhaps_a_hash_or_a_server)
         EXPECT_EQ(of_one.value().server, server);
     }
     EXPECT_EQ(parse_selector("bunny@lab 3").error().text,
-              "'lab 3' behind @ is neither a hash of 32 hexadecimal digits nor a server, "
+              "'lab 3' after @ is neither a hash of 32 hexadecimal digits nor a server, "
               "MACHINE[:PROCESS] or cert: and 12 digits of 0-9 a-f");
     EXPECT_FALSE(parse_selector("bunny@"));
     EXPECT_FALSE(parse_selector("bunny@" + std::string(81, 'a')));

@@ -7,7 +7,7 @@
 #include "transport/chunk_loader.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/dds/header_fetch.hpp"
 
 #include <gtest/gtest.h>
@@ -89,32 +89,32 @@ std::vector<std::string> devices_of_open_sockets()
 
 /// Server in its own thread and DDS domain, which communicates with the client's domain over
 /// loopback sockets, as between processes.
-class HostThread
+class ServerThread
 {
 public:
-    HostThread(std::uint32_t domain, std::vector<PublishedModel> models, Log log)
+    ServerThread(std::uint32_t domain, std::vector<PublishedModel> models, Log log)
     {
-        auto created = DdsHost::create(domain, std::move(models), std::move(log));
+        auto created = DdsServer::create(domain, std::move(models), std::move(log));
         if (!created)
         {
             ADD_FAILURE() << created.error().text;
             return;
         }
-        host_ = std::move(created).value();
+        server_ = std::move(created).value();
         thread_ = std::thread(
             [this]
             {
                 while (!stop_)
                 {
-                    host_->wait(10ms);
-                    host_->step();
+                    server_->wait(10ms);
+                    server_->step();
                     const std::lock_guard lock(mutex_);
-                    counters_ = host_->counters();
-                    subscribers_ = host_->subscribers();
+                    counters_ = server_->counters();
+                    subscribers_ = server_->subscribers();
                 }
             });
     }
-    ~HostThread()
+    ~ServerThread()
     {
         stop_ = true;
         if (thread_.joinable())
@@ -122,25 +122,25 @@ public:
             thread_.join();
         }
     }
-    HostThread(const HostThread&) = delete;
-    HostThread& operator=(const HostThread&) = delete;
+    ServerThread(const ServerThread&) = delete;
+    ServerThread& operator=(const ServerThread&) = delete;
 
-    [[nodiscard]] DdsHost::Counters counters()
+    [[nodiscard]] DdsServer::Counters counters()
     {
         const std::lock_guard lock(mutex_);
         return counters_;
     }
-    [[nodiscard]] std::vector<DdsHost::Subscriber> subscribers()
+    [[nodiscard]] std::vector<DdsServer::Subscriber> subscribers()
     {
         const std::lock_guard lock(mutex_);
         return subscribers_;
     }
 
 private:
-    std::unique_ptr<DdsHost> host_;
+    std::unique_ptr<DdsServer> server_;
     std::mutex mutex_;
-    DdsHost::Counters counters_;
-    std::vector<DdsHost::Subscriber> subscribers_;
+    DdsServer::Counters counters_;
+    std::vector<DdsServer::Subscriber> subscribers_;
     std::atomic<bool> stop_{false};
     std::thread thread_;
 };
@@ -161,8 +161,8 @@ public:
 class Dds : public ::testing::Test
 {
 protected:
-    static constexpr std::uint32_t kHostDomain = 1; // Within this process; see SetUp.
-    static constexpr std::uint32_t kOtherHostDomain = 2;
+    static constexpr std::uint32_t kServerDomain = 1; // Within this process; see SetUp.
+    static constexpr std::uint32_t kOtherServerDomain = 2;
     static constexpr std::uint32_t kClientDomain = 3;
     static constexpr std::uint32_t kOtherClientDomain = 4;
 
@@ -173,12 +173,12 @@ protected:
         const auto path = folder.write((name + std::to_string(files_++)).c_str(), model.file);
         return {name, ModelStore::open(path).value()};
     }
-    std::unique_ptr<HostThread> host_of(const std::string& name, const TinyModel& model,
-                                        std::uint32_t domain = kHostDomain)
+    std::unique_ptr<ServerThread> server_of(const std::string& name, const TinyModel& model,
+                                            std::uint32_t domain = kServerDomain)
     {
         std::vector<PublishedModel> models;
         models.push_back(published(name, model));
-        return std::make_unique<HostThread>(domain, std::move(models), host_lines.log());
+        return std::make_unique<ServerThread>(domain, std::move(models), server_lines.log());
     }
     std::unique_ptr<DdsClient> client(std::uint32_t domain = kClientDomain)
     {
@@ -197,7 +197,7 @@ protected:
     /// Creates a server of this model and a controller with its start.
     void connect(const TinyModel& model)
     {
-        host = host_of("tiny", model);
+        server = server_of("tiny", model);
         controller = client();
         served = found(*controller);
     }
@@ -213,8 +213,8 @@ protected:
 
     TemporaryFolder folder;
     Lines lines;
-    Lines host_lines;
-    std::unique_ptr<HostThread> host;
+    Lines server_lines;
+    std::unique_ptr<ServerThread> server;
     std::unique_ptr<DdsClient> controller;
     ServedModel served; ///< Declared after the controller, whose link it has.
 
@@ -274,13 +274,13 @@ TEST_F(Dds, many_models_start_at_once_and_a_base_mesh_of_several_parts_comes_who
         selectors.push_back({"m" + std::to_string(i), std::nullopt});
     }
     ASSERT_GT(models[7].base.size(), 2 * kPartBytes);
-    HostThread server(kHostDomain, std::move(published_models), host_lines.log());
+    ServerThread many(kServerDomain, std::move(published_models), server_lines.log());
     const auto sut = client();
     auto found = sut->find_headers(selectors, kPatience);
     ASSERT_TRUE(found) << found.error().text;
     EXPECT_TRUE(std::ranges::all_of(found.value(),
                                     [](const ServedModel& model) { return model.base.empty(); }));
-    const std::uint64_t pieces = server.counters().pieces_sent;
+    const std::uint64_t pieces = many.counters().pieces_sent;
     EXPECT_EQ(pieces, models.size()); // Their headers, and nothing else.
     EXPECT_FALSE(bring_bases(found.value(), kPatience));
     for (std::size_t i = 0; i < models.size(); ++i)
@@ -305,13 +305,13 @@ TEST_F(Dds, many_models_start_at_once_and_a_base_mesh_of_several_parts_comes_who
     {
         expect_whole_model(got[i], models[i]);
     }
-    EXPECT_EQ(server.subscribers().size(), 1U); // One for each controller and any request.
+    EXPECT_EQ(many.subscribers().size(), 1U); // One for each controller and any request.
 }
 
-TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_header_is_completed_by_another)
+TEST_F(Dds, a_server_that_goes_in_the_middle_of_a_header_is_completed_by_another)
 {
     const TinyModel model = make_tiny_model({});
-    host = host_of("tiny", model);
+    server = server_of("tiny", model);
     const auto sut = client();
     HeaderSearch search(sut->exchange(), sut->catalogue(), kTiny[0]);
     ASSERT_TRUE(eventually(
@@ -320,8 +320,8 @@ TEST_F(Dds, a_host_that_goes_in_the_middle_of_a_header_is_completed_by_another)
             sut->exchange().step();
             return search.step() == HeaderSearch::State::under_way;
         }));
-    host.reset(); // The server was asked, and ended before an answer.
-    const auto second = host_of("tiny", model, kOtherHostDomain);
+    server.reset(); // The server was asked, and ended before an answer.
+    const auto second = server_of("tiny", model, kOtherServerDomain);
     EXPECT_TRUE(eventually(
         [&]
         {
@@ -337,7 +337,7 @@ class PartCounter final : public PieceReceiver
 public:
     explicit PartCounter(const ContentHash& model) : model_(model) {}
     [[nodiscard]] const ContentHash& model() const override { return model_; }
-    void receive(std::uint64_t /*host_epoch*/, ContentKey key,
+    void receive(std::uint64_t /*server_epoch*/, ContentKey key,
                  std::span<const std::byte> /*bytes*/) override
     {
         times[key.number] += key.kind == ContentKind::base ? 1 : 0;
@@ -348,10 +348,10 @@ private:
     ContentHash model_;
 };
 
-TEST_F(Dds, what_came_of_a_base_mesh_before_its_host_went_is_not_asked_of_another)
+TEST_F(Dds, what_came_of_a_base_mesh_before_its_server_went_is_not_asked_of_another)
 {
     const TinyModel model = make_tiny_model({.base_faces = 12'000});
-    host = host_of("tiny", model);
+    server = server_of("tiny", model);
     const auto sut = client();
     PieceExchange& exchange = sut->exchange();
     auto found = sut->find_headers(kTiny, kPatience);
@@ -369,8 +369,8 @@ TEST_F(Dds, what_came_of_a_base_mesh_before_its_host_went_is_not_asked_of_anothe
             return counter.times[1] == 1;
         }));
     EXPECT_EQ(fetch.step(), BaseFetch::State::under_way);
-    host.reset(); // The rest was also requested from it, but was not sent.
-    const auto second = host_of("tiny", model, kOtherHostDomain);
+    server.reset(); // The rest was also requested from it, but was not sent.
+    const auto second = server_of("tiny", model, kOtherServerDomain);
     EXPECT_TRUE(eventually([&] { return fetch.step() == BaseFetch::State::done; }));
     EXPECT_TRUE(std::ranges::equal(base_less.base, model.base));
     EXPECT_EQ(counter.times[0], 1);
@@ -401,7 +401,7 @@ TEST_F(Dds, a_model_that_is_announced_otherwise_than_it_is_is_refused_or_never_c
             controller->exchange().step();
             return other_base.step() == HeaderFetch::State::refused;
         }));
-    EXPECT_NE(other_base.objection().find("but its header names one of"), std::string::npos)
+    EXPECT_NE(other_base.objection().find("but its header states"), std::string::npos)
         << other_base.objection();
     // A part of another size than announced is skipped.
     HeaderFetch other_header = fetch_with([](Catalogue::Offer& offer) { offer.header_bytes -= 1; });
@@ -450,7 +450,7 @@ TEST_F(Dds, two_controllers_get_what_each_asked_for_and_nothing_else)
     connect(model);
     const auto second = client(kOtherClientDomain);
     const ServedModel two = found(*second);
-    EXPECT_TRUE(eventually([&] { return host->subscribers().size() == 2; }));
+    EXPECT_TRUE(eventually([&] { return server->subscribers().size() == 2; }));
     std::vector<ContentKey> even;
     std::vector<ContentKey> odd;
     for (std::uint32_t chunk = 0; chunk < 40; ++chunk)
@@ -472,17 +472,17 @@ TEST_F(Dds, two_controllers_get_what_each_asked_for_and_nothing_else)
     }
 }
 
-TEST_F(Dds, a_restarted_host_with_the_same_file_is_adopted_under_its_new_epoch)
+TEST_F(Dds, a_restarted_server_with_the_same_file_is_adopted_under_its_new_epoch)
 {
     const TinyModel model = make_tiny_model({.records = 64 * 4});
     connect(model);
     ChunkLink& sut = *served.link;
     Collector got;
-    host.reset();
-    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::host_gone; }));
-    EXPECT_TRUE(lines.has("host of model 'tiny' is gone"));
+    server.reset();
+    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::server_gone; }));
+    EXPECT_TRUE(lines.has("server of model 'tiny' disconnected"));
     const std::uint64_t session = sut.session();
-    host = host_of("tiny", model);
+    server = server_of("tiny", model);
     ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::connected; }));
     EXPECT_GT(sut.session(), session);
     EXPECT_TRUE(lines.has("model 'tiny' is served again"));
@@ -508,10 +508,10 @@ TEST_F(Dds, a_changed_file_under_the_same_name_does_not_replace_the_resident_one
     connect(model);
     ChunkLink& sut = *served.link;
     Collector got;
-    host.reset();
-    host = host_of("tiny", make_tiny_model({.seed = 99}));
+    server.reset();
+    server = server_of("tiny", make_tiny_model({.seed = 99}));
     EXPECT_TRUE(polled_until(sut, got, [&] { return lines.has("with another hash"); }));
-    EXPECT_EQ(sut.state(), LinkState::host_gone);
+    EXPECT_EQ(sut.state(), LinkState::server_gone);
     EXPECT_EQ(got.count, 0U);
 }
 
@@ -541,7 +541,7 @@ TEST_F(Dds, where_nothing_is_published_the_likeliest_cause_is_named_first)
     const std::string absent = lonely->find({"absent", std::nullopt}, 100ms).error().text;
     ::setenv("CYCLONEDDS_URI", uri.c_str(), 1);
     EXPECT_TRUE(absent.starts_with("model 'absent' is not published on domain 3: CYCLONEDDS_URI is "
-                                   "not set, so only this machine is heard"))
+                                   "not set, so only this machine is reached"))
         << absent;
     EXPECT_NE(absent.find("published there: none)"), std::string::npos) << absent;
 }
@@ -574,7 +574,7 @@ TEST_F(Dds, of_two_hashes_under_one_name_the_first_seen_is_used_or_the_one_that_
     const TinyModel first = make_tiny_model({});
     const TinyModel second = make_tiny_model({.seed = 2});
     connect(first);
-    const auto other = host_of("tiny", second, kOtherHostDomain);
+    const auto other = server_of("tiny", second, kOtherServerDomain);
     const auto pinned = controller->find({"tiny", model_hash(second.header)}, kPatience);
     ASSERT_TRUE(pinned) << pinned.error().text;
     EXPECT_TRUE(std::ranges::equal(pinned.value().header, second.header));
@@ -584,23 +584,23 @@ TEST_F(Dds, of_two_hashes_under_one_name_the_first_seen_is_used_or_the_one_that_
 TEST_F(Dds, controllers_of_one_name_are_served_each_and_removed_when_they_leave)
 {
     connect(make_tiny_model({}));
-    ASSERT_TRUE(eventually([&] { return host->subscribers().size() == 1; }));
-    EXPECT_EQ(host->subscribers()[0].controller, "test-3");
-    EXPECT_TRUE(host_lines.has("controller test-3 subscribed"));
-    EXPECT_FALSE(host_lines.has("of this name"));
+    ASSERT_TRUE(eventually([&] { return server->subscribers().size() == 1; }));
+    EXPECT_EQ(server->subscribers()[0].controller, "test-3");
+    EXPECT_TRUE(server_lines.has("controller test-3 subscribed"));
+    EXPECT_FALSE(server_lines.has("another controller"));
     {
         const auto second = DdsClient::create(kOtherClientDomain, "test-3", lines.log());
         ASSERT_TRUE(second) << second.error().text;
         const ServedModel model = found(*second.value());
         EXPECT_TRUE(
-            host_lines.has("controller test-3 subscribed; another one of this name is here\n"));
-        EXPECT_EQ(host->subscribers().size(), 2U);
+            server_lines.has("controller test-3 subscribed; another controller has this name\n"));
+        EXPECT_EQ(server->subscribers().size(), 2U);
     }
-    EXPECT_TRUE(eventually([&] { return host->subscribers().size() == 1; }));
+    EXPECT_TRUE(eventually([&] { return server->subscribers().size() == 1; }));
     served.link.reset();
     controller.reset();
-    EXPECT_TRUE(eventually([&] { return host->subscribers().empty(); }));
-    EXPECT_TRUE(host_lines.has("controller test-3 left ("));
+    EXPECT_TRUE(eventually([&] { return server->subscribers().empty(); }));
+    EXPECT_TRUE(server_lines.has("controller test-3 left ("));
 }
 
 TEST_F(Dds, what_the_model_does_not_have_is_refused_and_the_rest_is_served)
@@ -616,16 +616,16 @@ TEST_F(Dds, what_the_model_does_not_have_is_refused_and_the_rest_is_served)
     Collector got;
     EXPECT_TRUE(polled_until(*served.link, got, [&] { return got.count == 1; }));
     EXPECT_TRUE(got.pieces.contains({ContentKind::chunk, 1}));
-    EXPECT_TRUE(eventually([&] { return host->counters().requests_refused == 4; }));
+    EXPECT_TRUE(eventually([&] { return server->counters().requests_refused == 4; }));
 }
 
-TEST_F(Dds, a_file_cut_while_it_is_served_costs_its_end_and_not_the_host)
+TEST_F(Dds, a_file_cut_while_it_is_served_costs_its_end_and_not_the_server)
 {
     const TinyModel model = make_tiny_model({});
     const auto path = folder.write("cut.spm", model.file);
     std::vector<PublishedModel> models;
     models.push_back({"cut", ModelStore::open(path).value()});
-    const HostThread cut_host(kHostDomain, std::move(models), host_lines.log());
+    const ServerThread cut_server(kServerDomain, std::move(models), server_lines.log());
     const auto sut = client();
     const ServedModel cut = found(*sut, "cut");
     std::filesystem::resize_file(path, model.file.size() - 5);
@@ -634,7 +634,7 @@ TEST_F(Dds, a_file_cut_while_it_is_served_costs_its_end_and_not_the_host)
     Collector got;
     EXPECT_TRUE(polled_until(*cut.link, got, [&] { return got.count == 1; }));
     EXPECT_TRUE(got.pieces.contains({ContentKind::chunk, 0}));
-    EXPECT_TRUE(host_lines.has("cut.spm: chunk 3 at offset "));
+    EXPECT_TRUE(server_lines.has("cut.spm: chunk 3 at offset "));
 }
 
 TEST_F(Dds, a_domain_that_cannot_be_joined_is_refused_in_one_printable_line)
@@ -681,11 +681,11 @@ TEST_F(Dds, a_domain_whose_ports_others_have_is_refused_with_their_numbers)
     EXPECT_TRUE(Domain::join(230));
 }
 
-TEST_F(Dds, without_a_configuration_of_the_user_a_process_joins_as_host_and_controller)
+TEST_F(Dds, without_a_configuration_of_the_user_a_process_joins_as_server_and_controller)
 {
     ::unsetenv("CYCLONEDDS_URI");
     std::vector<Domain> domains; // A server first, and then a controller.
-    for (const Party party : {Party::host, Party::controller, Party::host})
+    for (const Party party : {Party::server, Party::controller, Party::server})
     {
         auto joined = Domain::join(231, party);
         ASSERT_TRUE(joined) << joined.error().text;
@@ -702,9 +702,9 @@ TEST_F(Dds, without_a_configuration_of_the_user_nothing_from_outside_the_machine
     everywhere.sin_family = AF_INET;
     ASSERT_EQ(::bind(other, reinterpret_cast<sockaddr*>(&everywhere), sizeof(everywhere)), 0);
     const auto before = devices_of_open_sockets();
-    for (const Party party : {Party::host, Party::controller})
+    for (const Party party : {Party::server, Party::controller})
     {
-        const auto sut = Domain::join(party == Party::host ? 228 : 229, party);
+        const auto sut = Domain::join(party == Party::server ? 228 : 229, party);
         ASSERT_TRUE(sut) << sut.error().text;
         const auto open = devices_of_open_sockets();
         EXPECT_GT(open.size(), before.size());
@@ -780,7 +780,7 @@ private:
     pid_t pid_{0};
 };
 
-TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
+TEST_F(Dds, a_server_that_is_killed_is_noticed_and_its_successor_adopted)
 {
     test::isolate_domains(1);
     const TinyModel model = make_tiny_model({});
@@ -792,7 +792,7 @@ TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
     ChunkLink& sut = *served.link;
     Collector got;
     EXPECT_EQ(publisher->end(SIGKILL), -SIGKILL);
-    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::host_gone; }));
+    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::server_gone; }));
     publisher = program();
     ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::connected; }));
     EXPECT_EQ(publisher->end(SIGTERM), 0);
@@ -804,15 +804,15 @@ TEST_F(Dds, a_host_that_is_killed_is_noticed_and_its_successor_adopted)
 }
 
 /// Controllers without a user's configuration have no known ports.
-TEST_F(Dds, a_controller_finds_a_host_that_starts_after_it_and_keeps_one_of_its_process_out)
+TEST_F(Dds, a_controller_finds_a_server_that_starts_after_it_and_keeps_one_of_its_process_out)
 {
     ::unsetenv("CYCLONEDDS_URI");
     const std::uint32_t domain = 200 + static_cast<std::uint32_t>(::getpid()) % 30;
     auto early = DdsClient::create(domain, "early", {});
     ASSERT_TRUE(early) << early.error().text;
-    const auto host_beside = DdsHost::create(domain, {}, {});
-    ASSERT_FALSE(host_beside);
-    EXPECT_NE(host_beside.error().text.find("its host must join first"), std::string::npos);
+    const auto server_beside = DdsServer::create(domain, {}, {});
+    ASSERT_FALSE(server_beside);
+    EXPECT_NE(server_beside.error().text.find("its server must join first"), std::string::npos);
     const std::string path = folder.write("tiny.spm", make_tiny_model({}).file).string();
     const Program publisher({path, "--domain", std::to_string(domain)});
     const auto found = early.value()->find({"tiny", std::nullopt}, kPatience);
@@ -820,14 +820,14 @@ TEST_F(Dds, a_controller_finds_a_host_that_starts_after_it_and_keeps_one_of_its_
 }
 
 TEST_F(Dds,
-       spm_publish_looks_for_other_hosts_so_a_process_with_one_finds_it_whether_it_looks_or_not)
+       spm_publish_looks_for_other_servers_so_a_process_with_one_finds_it_whether_it_looks_or_not)
 {
     ::unsetenv("CYCLONEDDS_URI");
     const std::uint32_t domain = 200 + static_cast<std::uint32_t>(::getpid()) % 30;
     const std::string path = folder.write("tiny.spm", make_tiny_model({}).file).string();
     const Program publisher({path, "--domain", std::to_string(domain)});
     {
-        const auto alone = Domain::join(domain, Party::host);
+        const auto alone = Domain::join(domain, Party::server);
         ASSERT_TRUE(alone) << alone.error().text;
         const auto beside = DdsClient::create(domain, "beside", {});
         ASSERT_TRUE(beside) << beside.error().text;

@@ -6,7 +6,7 @@
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/dds/placement.hpp"
 #include "transport/dds/scene_reader.hpp"
 
@@ -58,17 +58,17 @@ public:
     void step()
     {
         client_->exchange().step();
-        scene_.poll(hosts,
+        scene_.poll(servers,
                     [this](SceneNews what, const SeenObject& object)
                     {
                         ++news[static_cast<std::size_t>(what)];
                         last = object;
                     });
     }
-    [[nodiscard]] const SeenObject* find(std::uint64_t host, std::uint32_t object)
+    [[nodiscard]] const SeenObject* find(std::uint64_t server, std::uint32_t object)
     {
-        const auto at = scene_.objects(host).find(object);
-        return at == scene_.objects(host).end() ? nullptr : &at->second;
+        const auto at = scene_.objects(server).find(object);
+        return at == scene_.objects(server).end() ? nullptr : &at->second;
     }
     [[nodiscard]] std::size_t count(SceneNews what) const
     {
@@ -78,7 +78,7 @@ public:
     [[nodiscard]] SceneReader& scene() { return scene_; }
 
     test::Lines lines;
-    std::vector<std::uint64_t> hosts;
+    std::vector<std::uint64_t> servers;
     std::array<std::size_t, 4> news{};
     SeenObject last;
 
@@ -91,37 +91,37 @@ private:
 class DdsObjects : public ::testing::Test
 {
 protected:
-    static constexpr std::uint32_t kHostDomain = 1;
-    static constexpr std::uint32_t kOtherHostDomain = 2;
+    static constexpr std::uint32_t kServerDomain = 1;
+    static constexpr std::uint32_t kOtherServerDomain = 2;
     static constexpr std::uint32_t kClientDomain = 3;
 
     void SetUp() override
     {
         test::isolate_domains();
-        host = make_host(kHostDomain);
+        server = make_server(kServerDomain);
         follower.emplace(kClientDomain);
-        follower->hosts = {host->epoch()};
+        follower->servers = {server->epoch()};
     }
-    std::unique_ptr<DdsHost> make_host(std::uint32_t domain)
+    std::unique_ptr<DdsServer> make_server(std::uint32_t domain)
     {
         const auto path =
             folder.write(("tiny" + std::to_string(domain)).c_str(), make_tiny_model({}).file);
         std::vector<PublishedModel> models;
         models.push_back({"tiny", ModelStore::open(path).value()});
-        auto made = DdsHost::create(domain, std::move(models), {});
+        auto made = DdsServer::create(domain, std::move(models), {});
         EXPECT_TRUE(made) << made.error().text;
         return std::move(made).value();
     }
     [[nodiscard]] ShownObject object_called(const std::string& name, const Pose& pose = {}) const
     {
-        return {name, host->models()[0].store().hash(), {}, pose};
+        return {name, server->models()[0].store().hash(), {}, pose};
     }
     bool step_until(const std::function<bool()>& is_so)
     {
         return eventually(
             [&]
             {
-                host->step();
+                server->step();
                 follower->step();
                 return is_so();
             });
@@ -131,37 +131,37 @@ protected:
     {
         const auto end = std::chrono::steady_clock::now() + time;
         static_cast<void>(step_until([&] { return std::chrono::steady_clock::now() > end; }));
-        host->step();
+        server->step();
         follower->step();
     }
     [[nodiscard]] const SeenObject* seen(std::uint32_t object)
     {
-        return follower->find(host->epoch(), object);
+        return follower->find(server->epoch(), object);
     }
 
     TemporaryFolder folder;
-    std::unique_ptr<DdsHost> host;
+    std::unique_ptr<DdsServer> server;
     std::optional<Follower> follower;
 };
 
-TEST_F(DdsObjects, come_move_and_go_as_the_host_says)
+TEST_F(DdsObjects, come_move_and_go_as_the_server_says)
 {
     ShownObject shown = object_called("cup", some_pose());
     shown.material = {900.0, 0.5, 0.25, 3.0, 4.0, 1e-5, 1e-3};
-    const std::uint32_t cup = host->objects().show(shown).value();
+    const std::uint32_t cup = server->objects().show(shown).value();
     ASSERT_TRUE(step_until([&] { return seen(cup) != nullptr; }));
     EXPECT_TRUE(seen(cup)->shown == shown);
     EXPECT_EQ(follower->count(SceneNews::comes), 1U);
 
-    ASSERT_TRUE(host->objects().move(cup, some_pose(0.5)));
+    ASSERT_TRUE(server->objects().move(cup, some_pose(0.5)));
     ASSERT_TRUE(step_until([&] { return seen(cup)->shown.pose.translation_m[0] == 0.5; }));
-    EXPECT_GT(seen(cup)->host_time_ns, 0);
-    host->objects().remove(cup);
-    EXPECT_EQ(host->objects().objects(), 0U);
+    EXPECT_GT(seen(cup)->server_time_ns, 0);
+    server->objects().remove(cup);
+    EXPECT_EQ(server->objects().objects(), 0U);
     ASSERT_TRUE(step_until([&] { return seen(cup) == nullptr; }));
     EXPECT_EQ(follower->count(SceneNews::goes), 1U);
 
-    const std::uint32_t pot = host->objects().show(object_called("pot")).value();
+    const std::uint32_t pot = server->objects().show(object_called("pot")).value();
     EXPECT_EQ(pot, cup); // The number is reused with another generation.
     ASSERT_TRUE(step_until([&] { return seen(pot) != nullptr; }));
     EXPECT_EQ(seen(pot)->shown.name, "pot");
@@ -169,29 +169,29 @@ TEST_F(DdsObjects, come_move_and_go_as_the_host_says)
     EXPECT_EQ(seen(pot)->shown.material.stiffness_n_per_m, kInfinity);
 }
 
-TEST_F(DdsObjects, feel_otherwise_when_the_host_says_so)
+TEST_F(DdsObjects, feel_otherwise_when_the_server_says_so)
 {
-    const std::uint32_t cup = host->objects().show(object_called("cup", some_pose())).value();
+    const std::uint32_t cup = server->objects().show(object_called("cup", some_pose())).value();
     ASSERT_TRUE(step_until([&] { return seen(cup) != nullptr; }));
     EXPECT_EQ(seen(cup)->shown.material, Material{});
     const Material honey{900.0, 0.5, 0.25, 3.0, 4.0, 1e-5, 1e-3};
-    ASSERT_TRUE(host->objects().feel(cup, honey));
-    ASSERT_TRUE(host->objects().feel(cup, honey)); // The material is unchanged.
+    ASSERT_TRUE(server->objects().feel(cup, honey));
+    ASSERT_TRUE(server->objects().feel(cup, honey)); // The material is unchanged.
     ASSERT_TRUE(step_until([&] { return follower->count(SceneNews::feels) > 0; }));
     EXPECT_EQ(seen(cup)->shown.material, honey);
     EXPECT_EQ(seen(cup)->shown.pose.translation_m, some_pose().translation_m);
     Material none = honey;
     none.texture_height_m = 1e-3; // Height equal to the length.
-    const auto refused = host->objects().feel(cup, none);
+    const auto refused = server->objects().feel(cup, none);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().text.find("object 'cup' has a material with"), 0U);
-    EXPECT_EQ(host->objects().find(cup)->material, honey);
+    EXPECT_EQ(refused.error().text.find("object 'cup' has an invalid material"), 0U);
+    EXPECT_EQ(server->objects().find(cup)->material, honey);
     step_for(100ms);
     EXPECT_EQ(follower->count(SceneNews::feels), 1U);
     EXPECT_EQ(follower->count(SceneNews::comes), 1U);
     // A late joiner gets the present material.
     follower.emplace(kClientDomain, "late");
-    follower->hosts = {host->epoch()};
+    follower->servers = {server->epoch()};
     ASSERT_TRUE(step_until([&] { return seen(cup) != nullptr; }));
     EXPECT_EQ(seen(cup)->shown.material, honey);
     EXPECT_EQ(follower->count(SceneNews::feels), 0U);
@@ -199,18 +199,18 @@ TEST_F(DdsObjects, feel_otherwise_when_the_host_says_so)
 
 TEST_F(DdsObjects, are_heard_of_at_rest_as_often_as_in_motion)
 {
-    const std::uint32_t cup = host->objects().show(object_called("cup")).value();
+    const std::uint32_t cup = server->objects().show(object_called("cup")).value();
     ASSERT_TRUE(
-        step_until([&] { return seen(cup) && follower->scene().was_heard(host->epoch()); }));
+        step_until([&] { return seen(cup) && follower->scene().was_heard(server->epoch()); }));
     // A beat is sent every 20 ms. Records, once a second, would be too few.
     int heard = 0;
     EXPECT_TRUE(eventually(
         [&]
         {
-            host->wait(50ms);
-            host->step();
+            server->wait(50ms);
+            server->step();
             follower->step();
-            heard += follower->scene().was_heard(host->epoch()) ? 1 : 0;
+            heard += follower->scene().was_heard(server->epoch()) ? 1 : 0;
             return heard == 100;
         }))
         << heard;
@@ -220,15 +220,15 @@ TEST_F(DdsObjects, are_heard_of_at_rest_as_often_as_in_motion)
 /// A late joiner gets the record, which includes objects that have rested for long.
 TEST_F(DdsObjects, stand_for_a_late_joiner_where_they_came_to_rest)
 {
-    const std::uint32_t cup = host->objects().show(object_called("cup")).value();
+    const std::uint32_t cup = server->objects().show(object_called("cup")).value();
     for (int i = 1; i <= 20; ++i)
     {
-        ASSERT_TRUE(host->objects().move(cup, some_pose(0.01 * i)));
-        host->step();
+        ASSERT_TRUE(server->objects().move(cup, some_pose(0.01 * i)));
+        server->step();
     }
     step_for(700ms);
     follower.emplace(kClientDomain, "late");
-    follower->hosts = {host->epoch()};
+    follower->servers = {server->epoch()};
     ASSERT_TRUE(step_until([&] { return seen(cup) != nullptr; }));
     EXPECT_NEAR(seen(cup)->shown.pose.translation_m[0], 0.2, 1e-15);
     EXPECT_EQ(follower->count(SceneNews::moves), 0U);
@@ -239,13 +239,13 @@ TEST_F(DdsObjects, many_come_at_once_and_move_together)
     constexpr std::uint32_t kMany = 1'000;
     for (std::uint32_t i = 0; i < kMany; ++i)
     {
-        ASSERT_TRUE(host->objects().show(object_called("o" + std::to_string(i))));
+        ASSERT_TRUE(server->objects().show(object_called("o" + std::to_string(i))));
     }
-    ASSERT_TRUE(step_until([&] { return follower->scene().is_complete(host->epoch()); }));
-    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), kMany);
+    ASSERT_TRUE(step_until([&] { return follower->scene().is_complete(server->epoch()); }));
+    EXPECT_EQ(follower->scene().objects(server->epoch()).size(), kMany);
     for (std::uint32_t i = 0; i < kMany; ++i)
     {
-        ASSERT_TRUE(host->objects().move(i, some_pose(1e-3 * i)));
+        ASSERT_TRUE(server->objects().move(i, some_pose(1e-3 * i)));
     }
     EXPECT_TRUE(step_until(
         [&]
@@ -260,9 +260,9 @@ TEST_F(DdsObjects, many_come_at_once_and_move_together)
         }));
 }
 
-TEST_F(DdsObjects, that_a_host_must_not_show_never_leave_it)
+TEST_F(DdsObjects, that_a_server_must_not_show_never_leave_it)
 {
-    ObjectPublisher& sut = host->objects();
+    ObjectPublisher& sut = server->objects();
     const auto refused =
         [&](const std::string& words, const std::function<void(ShownObject&)>& spoil)
     {
@@ -275,11 +275,11 @@ TEST_F(DdsObjects, that_a_host_must_not_show_never_leave_it)
     refused("object 'two words' needs a name",
             [](ShownObject& object) { object.name = "two words"; });
     refused("which isn't served", [](ShownObject& object) { object.model[0] ^= 1U; });
-    refused("object 'cup' stands nowhere: not_finite",
+    refused("object 'cup' has an invalid pose: not_finite",
             [](ShownObject& object) { object.pose.scale = kNan; });
-    refused("has a material with",
+    refused("has an invalid material",
             [](ShownObject& object) { object.material.dynamic_friction = 0.5; });
-    refused("has a material with",
+    refused("has an invalid material",
             [](ShownObject& object) {
                 object.material = {0.0, 0.0, 0.0, 0.0};
             });
@@ -287,7 +287,7 @@ TEST_F(DdsObjects, that_a_host_must_not_show_never_leave_it)
     {
         ASSERT_TRUE(sut.show(object_called("cup")));
     }
-    refused("is one too many: 4096 are the limit", [](ShownObject&) {});
+    refused("is refused: at most 4096 objects are served", [](ShownObject&) {});
     sut.remove(17);
     EXPECT_EQ(sut.show(object_called("cup")).value(), 17U);
     Pose pose = some_pose();
@@ -304,18 +304,19 @@ protected:
     void SetUp() override
     {
         DdsObjects::SetUp();
-        cup_ = host->objects().show(object_called("cup")).value();
+        cup_ = server->objects().show(object_called("cup")).value();
         ASSERT_TRUE(step_until([&] { return seen(cup_) != nullptr; }));
-        motion_ = make_writer(host->domain(), Topic::motion, host_partition(host->epoch())).value();
+        motion_ =
+            make_writer(server->domain(), Topic::motion, server_partition(server->epoch())).value();
         ASSERT_TRUE(eventually([&] { return is_matched(motion_); }));
     }
     void write(std::uint64_t serial, const tactus_v5_MovedObject& moved)
     {
         tactus_v5_MovedObject copy = moved;
         tactus_v5_Motion sample = {};
-        sample.host_epoch = host->epoch();
+        sample.server_epoch = server->epoch();
         sample.serial = serial;
-        sample.host_time_ns = 1;
+        sample.server_time_ns = 1;
         sample.moved = {1, 1, &copy, false};
         EXPECT_EQ(dds_write(motion_.handle, &sample), DDS_RETCODE_OK);
     }
@@ -397,7 +398,7 @@ TEST_F(DdsObjectFaults, of_objects_that_are_not_there_or_were_are_passed_over)
     moved.generation = 7;
     write(1'001, moved);
     write_until_counted(1'002, good(0.25));
-    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 1U);
+    EXPECT_EQ(follower->scene().objects(server->epoch()).size(), 1U);
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.25);
     EXPECT_EQ(seen(cup_)->counts.refused_in_all(), 0U);
 }
@@ -432,22 +433,22 @@ TEST_F(DdsObjectFaults, of_noise_never_pass_for_a_pose)
 }
 
 /// Messages of a server's participant about objects and models that its program does not allow.
-class DdsHostFaults : public DdsObjectFaults
+class DdsServerFaults : public DdsObjectFaults
 {
 protected:
     void SetUp() override
     {
         DdsObjectFaults::SetUp();
-        records_ =
-            make_writer(host->domain(), Topic::objects, host_partition(host->epoch())).value();
-        entries_ = make_writer(host->domain(), Topic::catalogue, "").value();
+        records_ = make_writer(server->domain(), Topic::objects, server_partition(server->epoch()))
+                       .value();
+        entries_ = make_writer(server->domain(), Topic::catalogue, "").value();
         ASSERT_TRUE(eventually([&] { return is_matched(records_) && is_matched(entries_); }));
     }
     [[nodiscard]] tactus_v5_ObjectRecord record_of(std::uint32_t number, const std::string& name,
                                                    const ContentHash& model)
     {
         tactus_v5_ObjectRecord record = {};
-        record.host_epoch = host->epoch();
+        record.server_epoch = server->epoch();
         record.object = number;
         record.generation = 1;
         name.copy(static_cast<char*>(record.name), kMaxNameBytes);
@@ -464,7 +465,7 @@ protected:
     void announce(std::uint32_t number, const std::string& name, const ContentHash& model)
     {
         tactus_v5_CatalogueEntry entry = {};
-        entry.host_epoch = host->epoch();
+        entry.server_epoch = server->epoch();
         entry.model = number;
         name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
         std::memcpy(entry.model_hash, model.data(), model.size());
@@ -474,13 +475,13 @@ protected:
     }
     [[nodiscard]] ContentHash other_model() const
     {
-        ContentHash hash = host->models()[0].store().hash();
+        ContentHash hash = server->models()[0].store().hash();
         hash[0] ^= 1U;
         return hash;
     }
-    [[nodiscard]] std::uint64_t refused_of_host(Refused reason)
+    [[nodiscard]] std::uint64_t refused_of_server(Refused reason)
     {
-        const ParticipantId own = host->domain().participants().own();
+        const ParticipantId own = server->domain().participants().own();
         std::uint64_t count = 0;
         for (const PeerRefusals& peer :
              follower->client().domain().participants().refusals().list())
@@ -500,9 +501,9 @@ protected:
 };
 
 /// A controller keeps 4,096 objects and 256 models of one server.
-TEST_F(DdsHostFaults, more_objects_and_models_than_a_controller_holds_take_no_room)
+TEST_F(DdsServerFaults, more_objects_and_models_than_a_controller_holds_take_no_room)
 {
-    const ContentHash model = host->models()[0].store().hash();
+    const ContentHash model = server->models()[0].store().hash();
     for (const std::uint32_t number :
          {std::uint32_t{kMaxObjects}, std::uint32_t{kMaxObjects} + 1, 100'000U, UINT32_MAX})
     {
@@ -516,25 +517,26 @@ TEST_F(DdsHostFaults, more_objects_and_models_than_a_controller_holds_take_no_ro
         return follower->client().catalogue().find({name, std::nullopt}) != nullptr;
     };
     ASSERT_TRUE(step_until([&] { return seen(kMaxObjects - 1) && is_offered("last"); }));
-    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 2U);
+    EXPECT_EQ(follower->scene().objects(server->epoch()).size(), 2U);
     EXPECT_FALSE(is_offered("beyond"));
     EXPECT_EQ(seen(cup_)->shown.name, "cup");
-    EXPECT_EQ(refused_of_host(Refused::object_number), 4U);
-    EXPECT_EQ(refused_of_host(Refused::model_number), 5U);
+    EXPECT_EQ(refused_of_server(Refused::object_number), 4U);
+    EXPECT_EQ(refused_of_server(Refused::model_number), 5U);
     const std::string who = "(process " + std::to_string(::getpid()) + " on ";
     follower->step(); // Includes counts between its poll and the last take.
     EXPECT_TRUE(follower->lines.has(who)) << follower->lines.text();
-    EXPECT_EQ(lines_with("object 4096: a host has objects 0 to 4095"), 1U);
-    EXPECT_EQ(lines_with("model 4096: a host has models 0 to 255"), 1U);
+    EXPECT_EQ(lines_with("object 4096: its number is not in 0 .. 4095"), 1U);
+    EXPECT_EQ(lines_with("model 4096: its number is not in 0 .. 255"), 1U);
 }
 
 /// Invalid records: counted by reason, and named once.
-TEST_F(DdsHostFaults, records_that_are_none_are_named_once_and_change_nothing)
+TEST_F(DdsServerFaults, records_that_are_none_are_named_once_and_change_nothing)
 {
     const auto write =
         [&](std::uint32_t number, const std::function<void(tactus_v5_ObjectRecord&)>& spoil)
     {
-        tactus_v5_ObjectRecord record = record_of(number, "pot", host->models()[0].store().hash());
+        tactus_v5_ObjectRecord record =
+            record_of(number, "pot", server->models()[0].store().hash());
         spoil(record);
         EXPECT_EQ(dds_write(records_.handle, &record), DDS_RETCODE_OK);
     };
@@ -546,26 +548,26 @@ TEST_F(DdsHostFaults, records_that_are_none_are_named_once_and_change_nothing)
     write(21, [](auto& record) { record.dynamic_friction = kNan; });
     write(30, [](auto& record) { record.pose.translation_m[0] = kNan; });
     announce(1, "a/b", other_model());
-    show(40, "last", host->models()[0].store().hash());
+    show(40, "last", server->models()[0].store().hash());
     ASSERT_TRUE(step_until(
-        [&] { return seen(40) != nullptr && refused_of_host(Refused::model_name) == 1; }));
-    EXPECT_EQ(refused_of_host(Refused::object_name), 3U);
-    EXPECT_EQ(refused_of_host(Refused::object_material), 2U);
-    EXPECT_EQ(refused_of_host(Refused::object_pose), 1U);
-    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 2U);
+        [&] { return seen(40) != nullptr && refused_of_server(Refused::model_name) == 1; }));
+    EXPECT_EQ(refused_of_server(Refused::object_name), 3U);
+    EXPECT_EQ(refused_of_server(Refused::object_material), 2U);
+    EXPECT_EQ(refused_of_server(Refused::object_pose), 1U);
+    EXPECT_EQ(follower->scene().objects(server->epoch()).size(), 2U);
     follower->step();
     EXPECT_EQ(lines_with("object 11: its name is not"), 1U) << follower->lines.text();
-    EXPECT_EQ(lines_with("refused of "), 4U) << follower->lines.text();
+    EXPECT_EQ(lines_with("refused from "), 4U) << follower->lines.text();
 }
 
-TEST_F(DdsHostFaults, objects_of_models_that_it_does_not_serve_are_refused_by_name)
+TEST_F(DdsServerFaults, objects_of_models_that_it_does_not_serve_are_refused_by_name)
 {
     show(7, "ghost", other_model());
-    show(8, "cup-2", host->models()[0].store().hash());
+    show(8, "cup-2", server->models()[0].store().hash());
     ASSERT_TRUE(step_until([&] { return seen(8) != nullptr; }));
     EXPECT_EQ(seen(7), nullptr);
-    const std::string line = "object 'ghost' is refused: it shows model " +
-                             hash_text(other_model()) + ", which its host doesn't serve\n";
+    const std::string line = "object 'ghost' is refused: its server doesn't serve its model, " +
+                             hash_text(other_model()) + "\n";
     ASSERT_TRUE(step_until([&] { return follower->lines.has(line); }));
     show(7, "ghost", other_model()); // Repeated by a server after a rest: no second line.
     step_for(2'500ms);
@@ -576,7 +578,7 @@ TEST_F(DdsHostFaults, objects_of_models_that_it_does_not_serve_are_refused_by_na
     // The object appears once the model is served; one that is removed before is never reported.
     show(9, "wraith", other_model());
     tactus_v5_ObjectRecord gone = {};
-    gone.host_epoch = host->epoch();
+    gone.server_epoch = server->epoch();
     gone.object = 9;
     EXPECT_EQ(dds_dispose(records_.handle, &gone), DDS_RETCODE_OK);
     step_for(500ms); // Waits until the server's statement about its objects settles it.
@@ -587,12 +589,12 @@ TEST_F(DdsHostFaults, objects_of_models_that_it_does_not_serve_are_refused_by_na
     EXPECT_EQ(follower->count(SceneNews::comes), 3U);
 }
 
-TEST_F(DdsHostFaults, a_model_that_changes_under_its_name_changes_nothing_that_is_there)
+TEST_F(DdsServerFaults, a_model_that_changes_under_its_name_changes_nothing_that_is_there)
 {
     auto found = follower->client().find({"tiny", std::nullopt}, test::kPatience,
                                          [&]
                                          {
-                                             host->step();
+                                             server->step();
                                              return true;
                                          });
     ASSERT_TRUE(found) << found.error().text;
@@ -613,7 +615,7 @@ TEST_F(DdsHostFaults, a_model_that_changes_under_its_name_changes_nothing_that_i
             });
     };
     EXPECT_TRUE(told("model 'tiny' is now published with another hash, " +
-                     hash_text(other_model()) + "; what is resident is kept"));
+                     hash_text(other_model()) + "; the resident data are kept"));
     EXPECT_EQ(seen(cup_)->shown.model, model);
     EXPECT_EQ(follower->count(SceneNews::goes), 0U);
     // The server repeats the truth within a second.
@@ -622,15 +624,15 @@ TEST_F(DdsHostFaults, a_model_that_changes_under_its_name_changes_nothing_that_i
 }
 
 /// A stranger in the server's partition overwrites, moves and removes its object.
-TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
+TEST_F(DdsObjectFaults, of_who_is_not_the_server_do_not_get_in)
 {
-    const Domain stranger = Domain::join(kOtherHostDomain).value();
-    const std::string partition = host_partition(host->epoch());
+    const Domain stranger = Domain::join(kOtherServerDomain).value();
+    const std::string partition = server_partition(server->epoch());
     const Endpoint records = make_writer(stranger, Topic::objects, partition).value();
     const Endpoint motion = make_writer(stranger, Topic::motion, partition).value();
     ASSERT_TRUE(eventually([&] { return is_matched(records) && is_matched(motion); }));
     tactus_v5_ObjectRecord record = {};
-    record.host_epoch = host->epoch();
+    record.server_epoch = server->epoch();
     record.object = cup_;
     record.generation = 9;
     record.serial = 1'000'000;
@@ -643,7 +645,7 @@ TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
     ASSERT_EQ(dds_dispose(records.handle, &record), DDS_RETCODE_OK);
     tactus_v5_MovedObject moved = good(7.0);
     tactus_v5_Motion sample = {};
-    sample.host_epoch = host->epoch();
+    sample.server_epoch = server->epoch();
     sample.serial = 1'000'000;
     sample.moved = {1, 1, &moved, false};
     ASSERT_EQ(dds_write(motion.handle, &sample), DDS_RETCODE_OK);
@@ -651,7 +653,7 @@ TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
     ASSERT_NE(seen(cup_), nullptr);
     EXPECT_EQ(seen(cup_)->shown.name, "cup");
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.0);
-    EXPECT_EQ(follower->scene().objects(host->epoch()).size(), 1U);
+    EXPECT_EQ(follower->scene().objects(server->epoch()).size(), 1U);
     const auto refused = follower->client().domain().participants().refusals().list();
     ASSERT_EQ(refused.size(), 1U);
     EXPECT_EQ(refused[0].id, stranger.participants().own());
@@ -661,21 +663,21 @@ TEST_F(DdsObjectFaults, of_who_is_not_the_host_do_not_get_in)
     EXPECT_EQ(seen(cup_)->shown.pose.translation_m[0], 0.5);
 }
 
-TEST_F(DdsObjects, of_a_host_that_is_not_followed_any_more_go)
+TEST_F(DdsObjects, of_a_server_that_is_not_followed_any_more_go)
 {
-    static_cast<void>(host->objects().show(object_called("cup")).value());
+    static_cast<void>(server->objects().show(object_called("cup")).value());
     ASSERT_TRUE(step_until([&] { return follower->count(SceneNews::comes) == 1; }));
-    follower->hosts.clear();
+    follower->servers.clear();
     follower->step();
     EXPECT_EQ(follower->count(SceneNews::goes), 1U);
-    EXPECT_TRUE(follower->scene().objects(host->epoch()).empty());
+    EXPECT_TRUE(follower->scene().objects(server->epoch()).empty());
 }
 
-TEST_F(DdsObjects, of_two_hosts_are_told_apart)
+TEST_F(DdsObjects, of_two_servers_are_told_apart)
 {
-    const auto other = make_host(kOtherHostDomain);
-    follower->hosts.push_back(other->epoch());
-    const std::uint32_t cup = host->objects().show(object_called("cup", some_pose(1.0))).value();
+    const auto other = make_server(kOtherServerDomain);
+    follower->servers.push_back(other->epoch());
+    const std::uint32_t cup = server->objects().show(object_called("cup", some_pose(1.0))).value();
     const std::uint32_t pot = other->objects().show(object_called("pot", some_pose(2.0))).value();
     EXPECT_EQ(cup, pot);
     EXPECT_TRUE(step_until(
@@ -694,27 +696,27 @@ TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
     constexpr std::uint32_t kMany = 500;
     for (std::uint32_t i = 0; i < kMany; ++i)
     {
-        ASSERT_TRUE(host->objects().show(object_called("o" + std::to_string(i))));
+        ASSERT_TRUE(server->objects().show(object_called("o" + std::to_string(i))));
     }
     std::vector<std::unique_ptr<Follower>> crowd;
     for (int i = 0; i < 8; ++i)
     {
         crowd.push_back(std::make_unique<Follower>(kClientDomain, "c" + std::to_string(i)));
-        crowd.back()->hosts = {host->epoch()};
+        crowd.back()->servers = {server->epoch()};
     }
     std::ptrdiff_t joining_max = 0;
     const auto has_all = [&](const std::unique_ptr<Follower>& each)
-    { return each->scene().objects(host->epoch()).size() == kMany; };
+    { return each->scene().objects(server->epoch()).size() == kMany; };
     EXPECT_TRUE(eventually(
         [&]
         {
-            host->step();
+            server->step();
             std::ptrdiff_t joining = 0;
             for (const auto& each : crowd)
             {
                 each->step();
-                joining += each->client().exchange().is_let_in(host->epoch()) &&
-                                   !each->scene().is_complete(host->epoch())
+                joining += each->client().exchange().is_let_in(server->epoch()) &&
+                                   !each->scene().is_complete(server->epoch())
                                ? 1
                                : 0;
             }
@@ -726,29 +728,29 @@ TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
 
 TEST_F(DdsObjects, motion_that_is_not_heard_comes_by_another_writer)
 {
-    const auto number = host->objects().show(object_called("a", some_pose()));
+    const auto number = server->objects().show(object_called("a", some_pose()));
     ASSERT_TRUE(number);
-    ASSERT_TRUE(step_until([&] { return follower->scene().was_heard(host->epoch()); }));
-    ASSERT_TRUE(step_until([&] { return follower->scene().is_complete(host->epoch()); }));
-    EXPECT_EQ(host->counters().renewed, 0U);
+    ASSERT_TRUE(step_until([&] { return follower->scene().was_heard(server->epoch()); }));
+    ASSERT_TRUE(step_until([&] { return follower->scene().is_complete(server->epoch()); }));
+    EXPECT_EQ(server->counters().renewed, 0U);
     // The scene's reader reports this after 300 ms of silence.
     ASSERT_TRUE(step_until(
         [&]
         {
-            follower->client().exchange().tell_objects_are_here(host->epoch(), false);
+            follower->client().exchange().tell_objects_are_here(server->epoch(), false);
             follower->client().exchange().step();
-            return host->counters().renewed > 0;
+            return server->counters().renewed > 0;
         }));
-    EXPECT_FALSE(host->objects().try_renew_motion(std::chrono::steady_clock::now()));
+    EXPECT_FALSE(server->objects().try_renew_motion(std::chrono::steady_clock::now()));
     step_for(500ms); // The first writer is gone by then.
-    ASSERT_TRUE(host->objects().move(number.value(), some_pose(0.5)));
+    ASSERT_TRUE(server->objects().move(number.value(), some_pose(0.5)));
     EXPECT_TRUE(step_until(
         [&]
         {
             const SeenObject* object = seen(number.value());
             return object != nullptr && object->shown.pose.translation_m[0] == 0.5;
         }));
-    EXPECT_EQ(host->counters().renewed, 1U);
+    EXPECT_EQ(server->counters().renewed, 1U);
 }
 
 } // namespace

@@ -112,9 +112,9 @@ Telemetry telemetry_of(const Size& size)
     }
     for (std::uint32_t i = 0; i < size.pairs; ++i)
     {
-        auto& [host_epoch, object, tool, kind, lower_m, upper_m, point_m, force_n] = pairs[i];
-        distinct.fill(host_epoch, object, lower_m, upper_m, point_m, force_n);
-        host_epoch <<= 40U;
+        auto& [server_epoch, object, tool, kind, lower_m, upper_m, point_m, force_n] = pairs[i];
+        distinct.fill(server_epoch, object, lower_m, upper_m, point_m, force_n);
+        server_epoch <<= 40U;
         tool = static_cast<std::uint8_t>(i % size.tools);
         kind = static_cast<AnswerKind>(i % 5);
         lower_m = -lower_m;
@@ -122,10 +122,10 @@ Telemetry telemetry_of(const Size& size)
     }
     for (std::uint32_t i = 0; i < size.models; ++i)
     {
-        auto& [pages, faces, blocks, nodes, stage, host_gone, is_static, follows_poses, pose_age_ns,
-               poses_refused, pieces, piece_wait_ns] = models[i];
-        distinct.fill(pages, faces, blocks, nodes, host_gone, is_static, follows_poses, pose_age_ns,
-                      poses_refused, pieces, piece_wait_ns);
+        auto& [pages, faces, blocks, nodes, stage, server_gone, is_static, follows_poses,
+               pose_age_ns, poses_refused, pieces, piece_wait_ns] = models[i];
+        distinct.fill(pages, faces, blocks, nodes, server_gone, is_static, follows_poses,
+                      pose_age_ns, poses_refused, pieces, piece_wait_ns);
         stage = static_cast<ModelStage>(i % kModelStages);
     }
     return telemetry;
@@ -185,9 +185,9 @@ RefinementState refinement_state_of(const Size& size)
     }
     for (std::uint32_t i = 0; i < size.objects; ++i)
     {
-        auto& [host_epoch, object, number, model, pose] = front.objects.emplace_back();
-        distinct.fill(host_epoch, object, pose.translation_m);
-        host_epoch <<= 40U;
+        auto& [server_epoch, object, number, model, pose] = front.objects.emplace_back();
+        distinct.fill(server_epoch, object, pose.translation_m);
+        server_epoch <<= 40U;
         number = 4'095 - i;
         model = i % size.models;
         pose.rotation = {0.0, 0.6, 0.0, 0.8};

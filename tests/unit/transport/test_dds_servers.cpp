@@ -81,7 +81,7 @@ protected:
     {
         const auto domain = static_cast<std::uint32_t>(strangers.size());
         strangers.push_back(std::make_unique<Stranger>(domain, of, "tiny", std::move(scene)));
-        EXPECT_TRUE(step_until([&] { return catalogue().has_host(strangers.back()->epoch()); }));
+        EXPECT_TRUE(step_until([&] { return catalogue().has_server(strangers.back()->epoch()); }));
         return *strangers.back();
     }
     [[nodiscard]] Catalogue& catalogue() { return client_->catalogue(); }
@@ -132,7 +132,7 @@ TEST_F(DdsServers, a_header_comes_from_the_next_where_the_first_is_silent_or_lie
         const auto found = find({"tiny"});
         ASSERT_TRUE(found) << found.error().text;
         EXPECT_TRUE(std::ranges::equal(found.value()[0].header, model.header));
-        EXPECT_EQ(found.value()[0].host_epoch, honest.epoch());
+        EXPECT_EQ(found.value()[0].server_epoch, honest.epoch());
     }
 }
 
@@ -145,7 +145,7 @@ TEST_F(DdsServers, a_base_mesh_comes_from_the_next_where_the_first_is_silent_or_
         come(model);
         auto found = find({"tiny"});
         ASSERT_TRUE(found) << found.error().text;
-        EXPECT_EQ(found.value()[0].host_epoch, strangers[0]->epoch());
+        EXPECT_EQ(found.value()[0].server_epoch, strangers[0]->epoch());
         const auto refusal = bring_bases(found.value(), kPatience,
                                          [this]
                                          {
@@ -170,7 +170,8 @@ TEST_F(DdsServers, a_base_mesh_that_all_forge_is_refused)
                                          return true;
                                      });
     ASSERT_TRUE(refusal);
-    EXPECT_EQ(refusal->text, "model 'tiny' has a base mesh of another hash than its header names");
+    EXPECT_EQ(refusal->text,
+              "model 'tiny' has a base mesh that does not match the hash in its header");
 }
 
 TEST_F(DdsServers, pieces_come_from_the_next_where_the_first_is_silent_or_lies)
@@ -199,9 +200,9 @@ TEST_F(DdsServers, pieces_come_from_the_next_where_the_first_is_silent_or_lies)
             }))
             << got.chunks.size();
         EXPECT_EQ(link.session(), 1U);
-        EXPECT_TRUE(lines.has(how == Forgery::withheld ? "doesn't answer; its pieces come from "
-                                                       : "sends what is wrong; its pieces come "
-                                                         "from "))
+        EXPECT_TRUE(lines.has(how == Forgery::withheld
+                                  ? "doesn't answer; pieces are now requested from "
+                                  : "sends wrong data; pieces are now requested from "))
             << lines.text();
         const int sent = first.sent(ContentKind::chunk);
         got.chunks.clear();
@@ -245,7 +246,7 @@ TEST_F(DdsServers, a_server_that_is_asked_for_by_its_name_is_the_only_one_that_i
     come(other);
     Stranger& second = come(model);
     const Participants& participants = catalogue().participants();
-    const std::string name = participants.name_of(catalogue().offers_of(second.epoch())[0]->host);
+    const std::string name = participants.name_of(catalogue().offers_of(second.epoch())[0]->server);
     const std::size_t on = name.rfind(" on ");
     ASSERT_NE(on, std::string::npos) << name;
     const std::string machine = name.substr(on + 4, name.size() - on - 5);
@@ -272,7 +273,7 @@ TEST_F(DdsServers, what_is_asked_for_is_kept_however_many_others_there_are)
     const auto announce = [&](std::size_t who, std::uint32_t number, const std::string& name)
     {
         tactus_v5_CatalogueEntry entry = {};
-        entry.host_epoch = crowd[who].participants().own_epoch();
+        entry.server_epoch = crowd[who].participants().own_epoch();
         entry.model = number;
         name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
         dds_write(writers[who].handle, &entry);
@@ -357,22 +358,22 @@ TEST_F(DdsServers, the_first_server_s_word_counts_until_it_is_gone_and_another_s
     };
     const Stranger& second = come(model, "toys");
     step_all();
-    EXPECT_EQ(open.host(), true_epoch);
+    EXPECT_EQ(open.server(), true_epoch);
     EXPECT_TRUE(lines.has("warning: scene 'toys' is offered by a second server, "));
     EXPECT_TRUE(lines.has("warning: model 'tiny' is offered by a second server, "));
     strangers[0].reset();
-    ASSERT_TRUE(step_until([&] { return !catalogue().has_host(true_epoch); }));
+    ASSERT_TRUE(step_until([&] { return !catalogue().has_server(true_epoch); }));
     step_all();
-    EXPECT_EQ(strict.host(), true_epoch);
+    EXPECT_EQ(strict.server(), true_epoch);
     EXPECT_FALSE(strict.is_resident());
-    EXPECT_EQ(listed.host(), true_epoch);
+    EXPECT_EQ(listed.server(), true_epoch);
     EXPECT_FALSE(listed.is_resident());
-    EXPECT_EQ(open.host(), second.epoch());
+    EXPECT_EQ(open.server(), second.epoch());
     EXPECT_TRUE(open.is_resident());
     EXPECT_EQ(events_of(strict), "pinned namesake lost not_followed ");
     EXPECT_EQ(events_of(listed), "pinned namesake lost not_followed ");
     EXPECT_EQ(events_of(open), "pinned namesake lost replaced ");
-    EXPECT_TRUE(lines.has("--failover doesn't allow it")) << lines.text();
+    EXPECT_TRUE(lines.has("--failover allows no other")) << lines.text();
 }
 
 } // namespace

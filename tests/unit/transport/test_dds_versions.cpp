@@ -9,7 +9,7 @@
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/dds/piece_frame.hpp"
 
 #include <dds/dds.h>
@@ -53,7 +53,7 @@ public:
 class DdsVersions : public ::testing::Test
 {
 protected:
-    static constexpr std::uint32_t kHostDomain = 1;
+    static constexpr std::uint32_t kServerDomain = 1;
     static constexpr std::uint32_t kClientDomain = 2;
     static constexpr std::uint32_t kStrangerDomain = 3;
 
@@ -91,9 +91,9 @@ protected:
     }
     void step()
     {
-        if (host)
+        if (server)
         {
-            host->step();
+            server->step();
         }
         if (link)
         {
@@ -105,9 +105,9 @@ protected:
     {
         std::vector<PublishedModel> models;
         models.push_back({"tiny", ModelStore::open(folder.write("tiny", model.file)).value()});
-        auto created = DdsHost::create(kHostDomain, std::move(models), log_into(host_lines));
+        auto created = DdsServer::create(kServerDomain, std::move(models), log_into(server_lines));
         ASSERT_TRUE(created) << created.error().text;
-        host = std::move(created).value();
+        server = std::move(created).value();
         auto found = client->find({"tiny", std::nullopt}, kPatience,
                                   [&]
                                   {
@@ -116,7 +116,7 @@ protected:
                                   });
         ASSERT_TRUE(found) << found.error().text;
         link = std::move(found.value().link);
-        ASSERT_TRUE(step_until([&] { return host->subscribers().size() == 1; }));
+        ASSERT_TRUE(step_until([&] { return server->subscribers().size() == 1; }));
     }
 
     /// True if our controller still gets its requests.
@@ -140,7 +140,7 @@ protected:
         Endpoint writer = make_writer(stranger, Topic::catalogue, "").value();
         tactus_v5_CatalogueEntry entry = {};
         std::strcpy(static_cast<char*>(entry.name), "tiny");
-        entry.host_epoch = epoch;
+        entry.server_epoch = epoch;
         entry.header_bytes = entry.base_bytes = 100;
         const ContentHash hash = model_hash(model.header);
         std::memcpy(entry.model_hash, hash.data(), hash.size());
@@ -153,7 +153,7 @@ protected:
         tactus_v5_Wanted wanted = {};
         std::memcpy(wanted.controller, controller.data(), controller.size());
         name.copy(static_cast<char*>(wanted.controller_name), kMaxNameBytes);
-        wanted.host_epoch = host->epoch();
+        wanted.server_epoch = server->epoch();
         wanted.granted = kCreditPieces;
         return wanted;
     }
@@ -167,9 +167,9 @@ protected:
     TinyModel model{make_tiny_model({})};
     TemporaryFolder folder;
     std::string lines;
-    std::string host_lines;
+    std::string server_lines;
     Domain stranger;
-    std::unique_ptr<DdsHost> host;
+    std::unique_ptr<DdsServer> server;
     std::unique_ptr<DdsClient> client;
     std::unique_ptr<ChunkLink> link;
     Nobody got;
@@ -181,29 +181,29 @@ TEST_F(DdsVersions, who_speaks_another_version_is_named_once_by_both_sides_and_p
     const Entity catalogue = topic_of_version("tactus/v1/catalogue");
     const Entity wanted = topic_of_version("tactus/v1/wanted");
     const Entity other = topic_of_version("other/v1/wanted");
-    const Entity host_writer(
+    const Entity server_writer(
         dds_create_writer(stranger.participant(), catalogue.get(), nullptr, nullptr));
     const Entity controller_writer(
         dds_create_writer(stranger.participant(), wanted.get(), nullptr, nullptr));
     const Entity foreign(dds_create_writer(stranger.participant(), other.get(), nullptr, nullptr));
     tactus_v5_CatalogueEntry entry = {};
     std::strcpy(static_cast<char*>(entry.name), "old");
-    ASSERT_EQ(dds_write(host_writer.get(), &entry), DDS_RETCODE_OK);
-    const std::string line = "is refused: it speaks protocol version 1, this build 5";
+    ASSERT_EQ(dds_write(server_writer.get(), &entry), DDS_RETCODE_OK);
+    const std::string line = "is refused: its protocol version is 1, this build's is 5";
     EXPECT_TRUE(step_until(
         [&] {
             return lines.find(line) != std::string::npos &&
-                   host_lines.find(line) != std::string::npos;
+                   server_lines.find(line) != std::string::npos;
         }));
     EXPECT_FALSE(step_until([&] { return test::count_of(lines, line) > 1; }, kMoment)) << lines;
-    EXPECT_EQ(test::count_of(host_lines, line), 1U) << host_lines;
+    EXPECT_EQ(test::count_of(server_lines, line), 1U) << server_lines;
     const std::string who = "(process " + std::to_string(::getpid());
     EXPECT_NE(lines.find(who), std::string::npos) << lines;
     EXPECT_EQ(client->catalogue().find({"old", std::nullopt}), nullptr);
     EXPECT_TRUE(is_served());
 }
 
-TEST_F(DdsVersions, who_says_to_be_another_host_is_not_heard)
+TEST_F(DdsVersions, who_says_to_be_another_server_is_not_heard)
 {
     const Endpoint lie = announce(stranger.participants().own_epoch() + 1);
     const auto alone = client->find({"tiny", std::nullopt}, kMoment);
@@ -219,12 +219,12 @@ TEST_F(DdsVersions, who_says_to_be_another_host_is_not_heard)
 }
 
 /// Every participant may dispose any instance, and filters do not see it.
-TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
+TEST_F(DdsVersions, who_is_not_the_server_can_not_end_it_nor_hide_its_end)
 {
     ASSERT_NO_FATAL_FAILURE(connect());
     const Endpoint writer = heard_writer(Topic::catalogue, "");
     tactus_v5_CatalogueEntry entry = {};
-    entry.host_epoch = host->epoch();
+    entry.server_epoch = server->epoch();
     const auto refused = [&]
     {
         for (const PeerRefusals& peer : client->domain().participants().refusals().list())
@@ -244,8 +244,8 @@ TEST_F(DdsVersions, who_is_not_the_host_can_not_end_it_nor_hide_its_end)
     ASSERT_EQ(dds_dispose(writer.handle, &entry), DDS_RETCODE_OK);
     ASSERT_TRUE(step_until([&] { return refused() == 4; }));
     EXPECT_EQ(lines.find("gone"), std::string::npos) << lines;
-    host.reset();
-    EXPECT_TRUE(step_until([&] { return link->state() == LinkState::host_gone; }));
+    server.reset();
+    EXPECT_TRUE(step_until([&] { return link->state() == LinkState::server_gone; }));
 }
 
 TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
@@ -255,13 +255,13 @@ TEST_F(DdsVersions, who_is_not_the_controller_can_not_end_it_nor_hide_its_end)
     const tactus_v5_Wanted wanted = request(client->domain().participants().own(), "ours");
     ASSERT_EQ(dds_dispose(writer.handle, &wanted), DDS_RETCODE_OK);
     ASSERT_TRUE(
-        step_until([&] { return !host->domain().participants().refusals().list().empty(); }));
-    EXPECT_EQ(host->subscribers().size(), 1U);
+        step_until([&] { return !server->domain().participants().refusals().list().empty(); }));
+    EXPECT_EQ(server->subscribers().size(), 1U);
     EXPECT_TRUE(is_served());
-    EXPECT_EQ(host_lines.find("left ("), std::string::npos) << host_lines;
+    EXPECT_EQ(server_lines.find("left ("), std::string::npos) << server_lines;
     link.reset();
     client.reset();
-    EXPECT_TRUE(step_until([&] { return host->subscribers().empty(); }));
+    EXPECT_TRUE(step_until([&] { return server->subscribers().empty(); }));
 }
 
 /// A sample that is not taken yet then reports an end, in its sender's name.
@@ -272,7 +272,7 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
     const Endpoint shows = heard_writer(Topic::catalogue, "");
     const tactus_v5_Wanted wanted = request(client->domain().participants().own(), "ours");
     tactus_v5_CatalogueEntry entry = {};
-    entry.host_epoch = host->epoch();
+    entry.server_epoch = server->epoch();
     constexpr auto kOnItsWay = 20ms;
     for (std::uint32_t i = 1; i <= 10; ++i)
     {
@@ -282,8 +282,8 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
         std::this_thread::sleep_for(kOnItsWay);
         ASSERT_EQ(dds_dispose(wants.handle, &wanted), DDS_RETCODE_OK);
         std::this_thread::sleep_for(kOnItsWay);
-        host->step();
-        ASSERT_EQ(host->subscribers().size(), 1U) << i << host_lines;
+        server->step();
+        ASSERT_EQ(server->subscribers().size(), 1U) << i << server_lines;
     }
     for (int i = 0; i < 2; ++i)
     {
@@ -295,14 +295,14 @@ TEST_F(DdsVersions, an_end_that_a_stranger_put_on_what_was_not_taken_yet_is_not_
         link->poll(got);
         EXPECT_EQ(link->state(), LinkState::connected) << lines;
     }
-    EXPECT_EQ(host_lines.find("left ("), std::string::npos) << host_lines;
+    EXPECT_EQ(server_lines.find("left ("), std::string::npos) << server_lines;
     EXPECT_EQ(lines.find("gone"), std::string::npos) << lines;
     link.reset();
     client.reset();
-    EXPECT_TRUE(step_until([&] { return host->subscribers().empty(); }));
+    EXPECT_TRUE(step_until([&] { return server->subscribers().empty(); }));
 }
 
-TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
+TEST_F(DdsVersions, pieces_of_who_says_to_be_the_server_are_not_taken)
 {
     ASSERT_NO_FATAL_FAILURE(connect());
     const ControllerId us = client->domain().participants().own();
@@ -310,7 +310,7 @@ TEST_F(DdsVersions, pieces_of_who_says_to_be_the_host_are_not_taken)
     std::vector<std::byte> payload;
     append_piece(payload, {model_hash(model.header), 0, 2, 0}, std::vector<std::byte>(10));
     tactus_v5_Pieces sample = {};
-    sample.host_epoch = host->epoch();
+    sample.server_epoch = server->epoch();
     sample.sent = 1'000'000;
     const auto length = static_cast<std::uint32_t>(payload.size());
     sample.payload = {length, length, reinterpret_cast<std::uint8_t*>(payload.data()), false};
@@ -330,18 +330,18 @@ TEST_F(DdsVersions, a_controller_is_served_under_its_own_id_and_a_valid_name_onl
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
     wanted = request(own, "strange\n\x1b[31m*");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
-    ASSERT_TRUE(step_until([&] { return host->counters().requests_refused == 1; }));
-    EXPECT_EQ(host->subscribers().size(), 1U);
-    EXPECT_EQ(test::count_of(host_lines, "is refused: its name is not"), 1U) << host_lines;
-    EXPECT_EQ(host_lines.find('\x1b'), std::string::npos);
-    const auto refused = host->domain().participants().refusals().list();
+    ASSERT_TRUE(step_until([&] { return server->counters().requests_refused == 1; }));
+    EXPECT_EQ(server->subscribers().size(), 1U);
+    EXPECT_EQ(test::count_of(server_lines, "is refused: its name is not"), 1U) << server_lines;
+    EXPECT_EQ(server_lines.find('\x1b'), std::string::npos);
+    const auto refused = server->domain().participants().refusals().list();
     ASSERT_EQ(refused.size(), 1U);
     EXPECT_EQ(refused[0].id, own);
     EXPECT_EQ(refused[0].counts.at(static_cast<std::size_t>(Refused::identity)), 1U);
     EXPECT_EQ(refused[0].counts.at(static_cast<std::size_t>(Refused::controller)), 1U);
     wanted = request(own, "stranger");
     ASSERT_EQ(dds_write(writer.handle, &wanted), DDS_RETCODE_OK);
-    EXPECT_TRUE(step_until([&] { return host->subscribers().size() == 2; }));
+    EXPECT_TRUE(step_until([&] { return server->subscribers().size() == 2; }));
 }
 
 TEST_F(DdsVersions, nobody_gets_more_pieces_than_a_window_beyond_what_it_has_seen)
@@ -358,7 +358,7 @@ TEST_F(DdsVersions, nobody_gets_more_pieces_than_a_window_beyond_what_it_has_see
     wanted.pieces = {1, 1, names.data(), false};
     const auto sent = [&]
     {
-        for (const DdsHost::Subscriber& each : host->subscribers())
+        for (const DdsServer::Subscriber& each : server->subscribers())
         {
             if (each.controller == "stranger")
             {
@@ -375,9 +375,9 @@ TEST_F(DdsVersions, nobody_gets_more_pieces_than_a_window_beyond_what_it_has_see
         }));
     for (int i = 0; i < 10; ++i)
     {
-        const std::uint64_t requests = host->counters().requests;
+        const std::uint64_t requests = server->counters().requests;
         dds_write(writer.handle, &wanted);
-        ASSERT_TRUE(step_until([&] { return host->counters().requests > requests; }));
+        ASSERT_TRUE(step_until([&] { return server->counters().requests > requests; }));
     }
     EXPECT_EQ(sent(), kCreditPieces);
     wanted.seen = UINT64_MAX; // More than was sent.
@@ -401,7 +401,7 @@ TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_ser
     wanted.pieces = {kMaxRequests, kMaxRequests, names.data(), false};
     const auto refused = [&]
     {
-        const auto list = host->domain().participants().refusals().list();
+        const auto list = server->domain().participants().refusals().list();
         return list.empty() ? 0 : list[0].counts.at(static_cast<std::size_t>(Refused::rate));
     };
     ASSERT_TRUE(test::eventually(
@@ -411,7 +411,7 @@ TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_ser
             {
                 dds_write(writer.handle, &wanted);
             }
-            host->step();
+            server->step();
             return refused() > 0;
         }));
     // All are in one process: a second later it is served again.
@@ -423,7 +423,8 @@ TEST_F(DdsVersions, who_asks_for_too_much_in_a_second_is_counted_by_name_and_ser
             return got.count > 0;
         }));
     EXPECT_TRUE(step_until(
-        [&] { return host_lines.find("more pieces asked for in a second") != std::string::npos; }));
+        [&]
+        { return server_lines.find("more pieces requested in a second") != std::string::npos; }));
 }
 
 } // namespace

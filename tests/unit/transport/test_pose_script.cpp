@@ -17,8 +17,8 @@ namespace
 {
 
 const std::vector<ScriptedObject> kObjects{{"bunny"}, {"cow"}};
-const std::string kNoLine = "is not TIME_S NAME X Y Z QX QY QZ QW [SCALE] nor TIME_S NAME material "
-                            "KEY=VALUE[,...]";
+const std::string kNoLine =
+    "is neither TIME_S NAME X Y Z QX QY QZ QW [SCALE] nor TIME_S NAME material KEY=VALUE[,...]";
 
 /// Fault of a text; empty if there is none.
 std::string fault_of(std::string_view text)
@@ -149,21 +149,21 @@ TEST(PoseScript, refuses_more_poses_between_lines_than_there_is_room_for)
     EXPECT_TRUE(interpolated(lines.value(), kObjects.size(), 1.0));
     const auto refused = interpolated(lines.value(), kObjects.size(), 3.0);
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().text, "--poses-rate: 3 poses a second are more than 2000000 in all");
+    EXPECT_EQ(refused.error().text, "--poses-rate: 3 poses a second give more than 2000000 poses");
 }
 
 TEST(PoseScript, names_the_line_and_what_is_wrong_with_it)
 {
     const std::string good = "0 cow 1 2 3 0 0 0 1\n";
-    EXPECT_EQ(fault_of(""), "holds no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
-    EXPECT_EQ(fault_of("# nothing\n"), "holds no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
+    EXPECT_EQ(fault_of(""), "has no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
+    EXPECT_EQ(fault_of("# nothing\n"), "has no line TIME_S NAME X Y Z QX QY QZ QW [SCALE]");
     const std::string& form = kNoLine;
     EXPECT_EQ(fault_of(good + "1 cow 1 2 3 0 0 0\n"), "line 2: " + form);
     EXPECT_EQ(fault_of("1 cow 1 2 3 0 0 0 1 1 1\n"), "line 1: " + form);
     EXPECT_EQ(fault_of("\n# x\n1\n"), "line 3: " + form);
-    EXPECT_EQ(fault_of("-1 cow 1 2 3 0 0 0 1"), "line 1: time '-1' is not 0 to 1000000 s");
-    EXPECT_EQ(fault_of("nan cow 1 2 3 0 0 0 1"), "line 1: time 'nan' is not 0 to 1000000 s");
-    EXPECT_EQ(fault_of("1e7 cow 1 2 3 0 0 0 1"), "line 1: time '1e7' is not 0 to 1000000 s");
+    EXPECT_EQ(fault_of("-1 cow 1 2 3 0 0 0 1"), "line 1: time '-1' is not in 0 .. 1000000 s");
+    EXPECT_EQ(fault_of("nan cow 1 2 3 0 0 0 1"), "line 1: time 'nan' is not in 0 .. 1000000 s");
+    EXPECT_EQ(fault_of("1e7 cow 1 2 3 0 0 0 1"), "line 1: time '1e7' is not in 0 .. 1000000 s");
     EXPECT_EQ(fault_of("0 dog 1 2 3 0 0 0 1"),
               "line 1: no object is called 'dog'; there are bunny, cow");
     EXPECT_EQ(fault_of("0 \x1b[31m 1 2 3 0 0 0 1"),
@@ -177,7 +177,7 @@ TEST(PoseScript, names_the_line_and_what_is_wrong_with_it)
     EXPECT_EQ(fault_of("0 cow 0 10001 0 0 0 0 1"), "line 1: X Y Z must be -10000 to 10000 m");
     EXPECT_EQ(fault_of("0 cow 0 0 0 0 0 0 1 0"), "line 1: SCALE must be 0.001 to 1000");
     EXPECT_EQ(fault_of("2 cow 0 0 0 0 0 0 1\n1.5 cow 0 0 0 0 0 0 1\n"),
-              "line 2: time 1.5 s is before 2 s of the line before");
+              "line 2: time 1.5 s is before 2 s, the time of the previous line");
 }
 
 TEST(PoseScript, refuses_every_cut_in_the_middle_of_a_line_or_reads_what_is_whole)

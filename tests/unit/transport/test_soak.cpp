@@ -244,11 +244,11 @@ public:
             streamed_model = frame == goes ? nullptr : std::move(streamed_model);
             if (frame == lost || frame == cut)
             {
-                steady_->link().lose_host();
+                steady_->link().lose_server();
             }
             if (frame == found || frame == mended)
             {
-                steady_->link().regain_host();
+                steady_->link().regain_server();
             }
             expect(steady_->step(), cycle, frame, "steady");
             if (streamed_model)

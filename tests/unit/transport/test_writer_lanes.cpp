@@ -29,7 +29,7 @@ protected:
     void SetUp() override
     {
         test::isolate_domains();
-        host_.emplace(Domain::join(1).value());
+        server_.emplace(Domain::join(1).value());
         client_.emplace(Domain::join(2).value());
     }
     Endpoint reader(const std::string& partition)
@@ -51,7 +51,7 @@ protected:
             });
     }
 
-    std::optional<Domain> host_;
+    std::optional<Domain> server_;
     std::optional<Domain> client_;
     std::set<std::uint64_t> counts_;
     std::set<dds_instance_handle_t> writers_;
@@ -59,7 +59,7 @@ protected:
 
 TEST_F(Lanes, without_a_reader_are_not_matched_and_write_to_nobody)
 {
-    auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
+    auto sut = WriterLanes::create(*server_, Topic::chunks, kPartition).value();
     tactus_v5_Pieces sample = {};
 
     EXPECT_FALSE(sut.is_matched());
@@ -72,7 +72,7 @@ TEST_F(Lanes, without_a_reader_are_not_matched_and_write_to_nobody)
 
 TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
 {
-    auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
+    auto sut = WriterLanes::create(*server_, Topic::chunks, kPartition).value();
     const Endpoint in = reader(kPartition);
     ASSERT_TRUE(eventually([&] { return sut.is_matched() && has_publisher(in); }));
     EXPECT_EQ(sut.open(), 1U);
@@ -81,7 +81,7 @@ TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
     {
         tactus_v5_Pieces sample = {};
         // Otherwise the reader would refuse it.
-        sample.host_epoch = host_->participants().own_epoch();
+        sample.server_epoch = server_->participants().own_epoch();
         tactus_v5_Pieces probe = sample;
         sample.sent = ++sent;
         EXPECT_TRUE(sut.write(&sample, &probe));
@@ -112,7 +112,7 @@ TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
 TEST_F(Lanes, an_older_request_that_comes_late_takes_no_credit_back)
 {
     const ControllerId controller{1, 2, 3};
-    auto sut = Subscription::create(*host_, controller, "controller", 0).value();
+    auto sut = Subscription::create(*server_, controller, "controller", 0).value();
     sut.request({0, {ContentKind::chunk, 0}}, 1);
     EXPECT_FALSE(sut.has_work()); // Nothing is granted yet.
 
@@ -124,7 +124,7 @@ TEST_F(Lanes, an_older_request_that_comes_late_takes_no_credit_back)
 
 TEST_F(Lanes, lose_what_a_reader_that_does_not_answer_would_make_them_keep)
 {
-    auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
+    auto sut = WriterLanes::create(*server_, Topic::chunks, kPartition).value();
     tactus_v5_Pieces sample = {};
     constexpr std::size_t bytes = WriterLanes::kUnackedMax / 2 + 1;
     for (int i = 0; i < 10; ++i)
@@ -144,10 +144,10 @@ TEST_F(Lanes, lose_what_a_reader_that_does_not_answer_would_make_them_keep)
 
 TEST_F(Lanes, that_are_renewed_are_one_other_writer_and_not_at_once_again)
 {
-    auto sut = WriterLanes::create(*host_, Topic::chunks, kPartition).value();
+    auto sut = WriterLanes::create(*server_, Topic::chunks, kPartition).value();
     const Endpoint in = reader(kPartition);
     tactus_v5_Pieces sample = {};
-    sample.host_epoch = host_->participants().own_epoch();
+    sample.server_epoch = server_->participants().own_epoch();
     const auto comes = [&](std::uint64_t count)
     {
         sample.sent = count;
@@ -172,7 +172,7 @@ TEST_F(Lanes, that_are_renewed_are_one_other_writer_and_not_at_once_again)
 
 TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_300_ms)
 {
-    auto sut = Subscription::create(*host_, ControllerId{1}, "controller", 100).value();
+    auto sut = Subscription::create(*server_, ControllerId{1}, "controller", 100).value();
     const auto start = Backoff::Clock::now();
     sut.set_credit({100, 228, 80}); // Older than samples sent since.
     EXPECT_EQ(sut.try_heal(start), nullptr);

@@ -21,38 +21,39 @@
 namespace tactus::hrtc
 {
 
-/// Topics between a controller and its hosts and viewers, except for the models. Hosts move
+/// Topics between a controller and its servers and viewers, except those of models. Servers move
 /// objects; the controller publishes its state. Runs on the transport thread and can't delay the
 /// loop.
-class HostTopics
+class ServerTopics
 {
 public:
     /// Period in which the controller's state is sent.
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
 
-    /// `client`, `controller` and `authorities`, which the keeper uses too, must outlive the
-    /// topics. Without `keeper`, the poses and scenes of hosts are ignored. The refinement state is
-    /// sent if `shows_refinement_state` is set.
-    [[nodiscard]] static Result<std::unique_ptr<HostTopics>, Refusal>
+    /// `client`, `controller` and `authorities` must outlive the topics. Without `keeper`, the
+    /// poses and scenes of servers are ignored. The refinement state is sent if
+    /// `shows_refinement_state` is set.
+    [[nodiscard]] static Result<std::unique_ptr<ServerTopics>, Refusal>
     create(dds::DdsClient& client, const Controller& controller,
            std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
            bool shows_refinement_state);
 
-    /// Connects the topics to the mailbox and taps of the haptic thread, which live as long as the
-    /// run. `front` may be null if shows_refinement_state() is false. The keeper takes `names`.
+    /// Connects the topics to the mailbox and taps of the haptic thread, which must live as long as
+    /// the run. `front` may be null if shows_refinement_state() is false. `names` receives the
+    /// names of objects added later, and may be empty.
     void connect(SceneMailbox& mailbox, const TelemetryTap& tap, RefinementStateTap* front,
                  MonotonicTime now, SceneKeeper::NameSink names = {});
     /// Reports to viewers that the tool began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept;
     [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
 
-    /// Sends poses to the mailbox, and publishes telemetry and refinement state when they are due.
-    /// Transport thread, after the chunk loader's round.
+    /// Passes poses to the mailbox, and publishes telemetry and refinement state when their periods
+    /// have passed. Transport thread, after the chunk loader's round.
     void step(MonotonicTime now);
 
-    /// Counts of poses by model; empty if poses aren't followed. Not during a step.
+    /// Counts of poses, one entry a model; empty if poses aren't followed. Not during a step.
     [[nodiscard]] std::vector<dds::PoseCounts> pose_counts() const;
-    /// Counts of the news of a followed scene.
+    /// Counts of the changes of the servers' objects; zero if poses aren't followed.
     [[nodiscard]] SceneNewsCounts scene_news() const;
     /// Refused messages of other participants of the domain.
     [[nodiscard]] std::vector<dds::PeerRefusals> refused() const
@@ -68,15 +69,16 @@ public:
     }
 
 private:
-    /// Pieces of one model and their waiting time when telemetry was last sent.
+    /// Number of pieces of one model, and the sum of their waiting times, when telemetry was last
+    /// sent.
     struct Seen
     {
         std::uint64_t pieces{0};
         std::int64_t wait_ns{0};
     };
 
-    HostTopics(const dds::DdsClient& client, const Controller& controller,
-               std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper);
+    ServerTopics(const dds::DdsClient& client, const Controller& controller,
+                 std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper);
 
     void send_telemetry(MonotonicTime now);
     void add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now);
@@ -85,9 +87,9 @@ private:
     const dds::DdsClient& client_;
     const Controller& controller_;
     std::span<dds::Authority> authorities_;
-    std::unique_ptr<SceneKeeper> keeper_; ///< May be null.
+    std::unique_ptr<SceneKeeper> keeper_; ///< Null if poses aren't followed.
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
-    std::unique_ptr<RefinementStateSender> front_; ///< May be null.
+    std::unique_ptr<RefinementStateSender> front_; ///< Null if no viewer gets it.
     const TelemetryTap* tap_{nullptr};
     MonotonicTime last_sent_{};
     std::vector<Seen> seen_;

@@ -26,7 +26,7 @@ int code_of(const std::variant<Options, int>& parsed)
 }
 
 /// Parses like the main() of the program named by the first word.
-int parse_host_options(int argc, char** argv)
+int parse_server_options(int argc, char** argv)
 {
     const std::string_view name = argv[0];
     CommandLine line(argv[0], "");
@@ -36,21 +36,21 @@ int parse_host_options(int argc, char** argv)
                                    : code_of(view::parse_options(line, argc, argv));
 }
 
-TEST(HostOptions, are_refused_in_one_line)
+TEST(ServerOptions, are_refused_in_one_line)
 {
-    EXPECT_GE(test::expect_refusals(parse_host_options, TACTUS_WRONG_USAGES), 100U);
+    EXPECT_GE(test::expect_refusals(parse_server_options, TACTUS_WRONG_USAGES), 100U);
 }
 
-TEST(HostOptions, are_explained_behind_the_name_of_the_program)
+TEST(ServerOptions, are_explained_behind_the_name_of_the_program)
 {
     for (const auto& [name, option] :
          {std::pair("spm_build", "--unit"), std::pair("spm_inspect", "--extract"),
           std::pair("spm_publish", "--domain"), std::pair("spm_view", "--replay")})
     {
         const std::string program = name;
-        const std::string version = test::shown_by(parse_host_options, program + " --version");
+        const std::string version = test::shown_by(parse_server_options, program + " --version");
         EXPECT_TRUE(version.starts_with(program + " ")) << version;
-        const std::string help = test::shown_by(parse_host_options, program + " --help");
+        const std::string help = test::shown_by(parse_server_options, program + " --help");
         EXPECT_NE(help.find(option), std::string::npos) << help;
     }
 }

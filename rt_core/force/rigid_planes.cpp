@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "rt_core/force/body_planes.hpp"
+#include "rt_core/force/rigid_planes.hpp"
 
 #include "rt_core/math/infinity.hpp"
 
@@ -14,33 +14,33 @@ namespace tactus
 namespace
 {
 
-/// Difference below which planes count as one, as a share of the tool's size. The plane that
+/// Difference below which planes count as one, as a share of the tool's size; the plane that
 /// restrains most is kept.
 constexpr double kSamePlane = 1e-3;
-/// Limits of a seam: an edge of a touched face. It leans by its distance along the face over the
-/// radius, by kMostLean at most, and its gap is at most kSeamGap radii. A face that really rises by
-/// an angle is touched above the other's plane by half of the angle's square times the radius. Over
-/// a seam the tool is as high over the face's plane as where that plane is touched. An edge that
-/// carries the tool has it lower, by half of the lean's square.
+/// Limits of a seam, the edge of a touched face: is_seam() leaves its plane out. A seam's plane
+/// leans to the face by kLeastLean .. kMostLean, and has a gap of at most kSeamGap radii. Its edge
+/// is at most kOnFace x lean x radius off the face's plane: a face that really rises is touched
+/// above that plane. The tool's point is at most kAbove x lean^2 x radius lower than over the face:
+/// an edge that carries the tool has a lower point.
 constexpr double kLeastLean = 1e-3;
 constexpr double kMostLean = 0.8;
 constexpr double kSeamGap = 0.5;
 constexpr double kOnFace = 1e-3;
 constexpr double kAbove = 0.1;
-/// Share of the radius to which a seam's tool point lies among those that touch the face's plane:
-/// they support the tool without the edge.
+/// Distance, as a share of the radius, within which a seam's tool point must lie among the points
+/// that touch the face's plane: these support the tool without the edge.
 constexpr double kSameSupport = 0.01;
-/// Distance from touching within which friction may hold, as a share of the radius.
+/// Gap of a plane up to which friction may hold, as a share of the radius.
 constexpr double kTouchingGap = 0.02;
-/// Slips below this share of the radius count as none.
+/// Slip below which a contact counts as not slipping, as a share of the radius.
 constexpr double kLeastSlip = 1e-4;
-/// Share of the friction that the pressure allows within which it is not corrected.
+/// Relative difference between assumed and allowed friction up to which it is not corrected.
 constexpr double kSameFriction = 1e-4;
 
 constexpr double kHalfRoot = 0.7071067811865476; ///< sin 45 degrees.
 constexpr double kSin22 = 0.3826834323650898;    ///< sin 22.5 degrees.
 constexpr double kCos22 = 0.9238795325112867;    ///< cos 22.5 degrees.
-/// Directions in a plane, over half a turn.
+/// Eight directions in a plane, over half a turn.
 constexpr std::array<std::array<double, 2>, 8> kDirections{{{1.0, 0.0},
                                                             {kCos22, kSin22},
                                                             {kHalfRoot, kHalfRoot},
@@ -68,7 +68,7 @@ double pressure_of(const NearestMotion<6>& held) noexcept
     return pressure;
 }
 
-/// A unit vector across a unit vector.
+/// Returns a unit vector perpendicular to a unit vector.
 Vec3 across(const Vec3& normal) noexcept
 {
     const Vec3 axis = std::abs(normal.x()) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
@@ -77,8 +77,8 @@ Vec3 across(const Vec3& normal) noexcept
 
 } // namespace
 
-void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double radius_m,
-                       const Motion<6>& gone) noexcept
+void RigidPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double radius_m,
+                        const Motion<6>& gone) noexcept
 {
     spaces_.clear();
     touches_.clear();
@@ -92,12 +92,12 @@ void BodyPlanes::begin(const Vec3& place_m, double arm_m, double size_m, double 
     exceeds_capacity_ = false;
 }
 
-Vec3 BodyPlanes::lever_m(std::uint32_t i) const noexcept
+Vec3 RigidPlanes::lever_m(std::uint32_t i) const noexcept
 {
     return touches_[i].on_tool_m - radius_m_ * touches_[i].normal - place_m_;
 }
 
-void BodyPlanes::add(const BodyTouch& touch, const BodyGrip& grip) noexcept
+void RigidPlanes::add(const RigidTouch& touch, const RigidGrip& grip) noexcept
 {
     if (touch.normal == Vec3(0.0, 0.0, 0.0))
     {
@@ -128,8 +128,8 @@ void BodyPlanes::add(const BodyTouch& touch, const BodyGrip& grip) noexcept
     replace(least, space, touch, grip);
 }
 
-void BodyPlanes::replace(std::size_t plane, const HalfSpace<6>& space, const BodyTouch& touch,
-                         const BodyGrip& grip) noexcept
+void RigidPlanes::replace(std::size_t plane, const HalfSpace<6>& space, const RigidTouch& touch,
+                          const RigidGrip& grip) noexcept
 {
     if (space.offset > spaces_[plane].offset)
     {
@@ -139,14 +139,14 @@ void BodyPlanes::replace(std::size_t plane, const HalfSpace<6>& space, const Bod
     }
 }
 
-BodyPlanes::Ground::Ground(std::uint32_t nearest, const Vec3& normal) noexcept
+RigidPlanes::Ground::Ground(std::uint32_t nearest, const Vec3& normal) noexcept
     : face(nearest), first(across(normal)), second(normal.cross(first))
 {
     high_m.fill(-kInfinity);
     low_m.fill(kInfinity);
 }
 
-BodyPlanes::Ground::Heights BodyPlanes::Ground::heights(const Vec3& point_m) const noexcept
+RigidPlanes::Ground::Heights RigidPlanes::Ground::heights(const Vec3& point_m) const noexcept
 {
     const double x = first.dot(point_m);
     const double y = second.dot(point_m);
@@ -158,7 +158,7 @@ BodyPlanes::Ground::Heights BodyPlanes::Ground::heights(const Vec3& point_m) con
     return heights_m;
 }
 
-void BodyPlanes::Ground::support(const Vec3& point_m) noexcept
+void RigidPlanes::Ground::support(const Vec3& point_m) noexcept
 {
     const Heights here_m = heights(point_m);
     for (std::size_t i = 0; i < here_m.size(); ++i)
@@ -168,7 +168,7 @@ void BodyPlanes::Ground::support(const Vec3& point_m) noexcept
     }
 }
 
-bool BodyPlanes::Ground::is_among_supports(const Vec3& point_m, double off_m) const noexcept
+bool RigidPlanes::Ground::is_among_supports(const Vec3& point_m, double off_m) const noexcept
 {
     const Heights here_m = heights(point_m);
     bool is_among = true;
@@ -179,12 +179,12 @@ bool BodyPlanes::Ground::is_among_supports(const Vec3& point_m, double off_m) co
     return is_among;
 }
 
-BodyPlanes::Grounds BodyPlanes::grounds() const noexcept
+RigidPlanes::Grounds RigidPlanes::grounds() const noexcept
 {
     Grounds grounds;
     for (std::uint32_t i = 0; i < spaces_.size(); ++i)
     {
-        const BodyTouch& touch = touches_[i];
+        const RigidTouch& touch = touches_[i];
         if (!touch.is_face)
         {
             continue;
@@ -193,7 +193,7 @@ BodyPlanes::Grounds BodyPlanes::grounds() const noexcept
             grounds,
             [&](const Ground& ground)
             {
-                const BodyTouch& face = touches_[ground.face];
+                const RigidTouch& face = touches_[ground.face];
                 const Vec3 between_m = touch.on_surface_m - face.on_surface_m;
                 return face.surface == touch.surface &&
                        (touch.normal - face.normal).squaredNorm() < kLeastLean * kLeastLean &&
@@ -214,10 +214,10 @@ BodyPlanes::Grounds BodyPlanes::grounds() const noexcept
     return grounds;
 }
 
-bool BodyPlanes::is_seam(std::size_t plane, const Ground& ground) const noexcept
+bool RigidPlanes::is_seam(std::size_t plane, const Ground& ground) const noexcept
 {
-    const BodyTouch& touch = touches_[plane];
-    const BodyTouch& face = touches_[ground.face];
+    const RigidTouch& touch = touches_[plane];
+    const RigidTouch& face = touches_[ground.face];
     const double lean = (touch.normal - face.normal).norm();
     const double edge_m = face.normal.dot(touch.on_surface_m - face.on_surface_m);
     const double tool_m = face.normal.dot(touch.on_tool_m - face.on_surface_m);
@@ -228,7 +228,7 @@ bool BodyPlanes::is_seam(std::size_t plane, const Ground& ground) const noexcept
            ground.is_among_supports(touch.on_tool_m - place_m_, kSameSupport * radius_m_);
 }
 
-void BodyPlanes::leave_out_seams() noexcept
+void RigidPlanes::leave_out_seams() noexcept
 {
     const Grounds grounds = this->grounds();
     StaticVector<std::size_t, kMaxHalfSpaces> kept;
@@ -255,10 +255,10 @@ void BodyPlanes::leave_out_seams() noexcept
     }
 }
 
-BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
+RigidMotion RigidPlanes::nearest(const Motion<6>& wanted) noexcept
 {
     leave_out_seams();
-    BodyMotion answer;
+    RigidMotion answer;
     const NearestMotion<6> held = plain(wanted, answer.is_over_constrained);
     answer.motion = held.motion;
     bool rubs = false;
@@ -273,7 +273,7 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
         return answer;
     }
     const Chosen chosen = rubs ? choose(held) : Chosen{};
-    if (chosen.empty()) // Without friction, or the tool reaches the surface in this step.
+    if (chosen.empty()) // There is no friction, or no contact touches yet.
     {
         rub(held, wanted, Motion<6>::Zero(), answer);
         return answer;
@@ -282,14 +282,14 @@ BodyMotion BodyPlanes::nearest(const Motion<6>& wanted) noexcept
     const NearestMotion<6> tilted = nearest_motion<6>(tilted_.view(), wanted);
     if (!tilted.is_feasible || tilted.held_by.empty())
     {
-        return answer; // Surfaces that part under the tool: no sticking place is known.
+        return answer; // The surfaces part under the tool, so no sticking place is known.
     }
     return is_stuck(tilted) ? stuck(tilted) : sliding(tilted, wanted);
 }
 
-/// Nearest motion by the plain planes. If a gap is too narrow for the tool, it holds the tool in
-/// place.
-NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_over_constrained) noexcept
+/// Nearest motion that the plain planes allow. If a gap is too narrow for the tool, the planes hold
+/// the tool in place.
+NearestMotion<6> RigidPlanes::plain(const Motion<6>& wanted, bool& is_over_constrained) noexcept
 {
     NearestMotion<6> nearest = nearest_motion<6>(spaces_.view(), wanted);
     if (nearest.is_feasible)
@@ -304,23 +304,24 @@ NearestMotion<6> BodyPlanes::plain(const Motion<6>& wanted, bool& is_over_constr
     return nearest_motion<6>(spaces_.view(), wanted);
 }
 
-/// Squared difference of two planes, with the tool's size as arm.
-double BodyPlanes::apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept
+/// Squared difference of two planes' normals, with the tool's size as arm.
+double RigidPlanes::apart_sq(const HalfSpace<6>& a, const HalfSpace<6>& b) const noexcept
 {
     const Motion<6> between = a.normal - b.normal;
     return between.head<3>().squaredNorm() + turn_weight_ * between.tail<3>().squaredNorm();
 }
 
-/// Chooses the contacts that friction may hold: first holding planes, then always the touching
-/// plane that differs most from those chosen. A flat body needs all its corners to stick, wherever
-/// its weight shifts.
-BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexcept
+/// Chooses the contacts that friction may hold: first holding planes, then each time the touching
+/// plane that differs most from those chosen. A flat tool needs all its corners to stick, as its
+/// load shifts.
+RigidPlanes::Chosen RigidPlanes::choose(const NearestMotion<6>& plain) const noexcept
 {
     Chosen chosen;
     struct Candidate
     {
         std::uint32_t plane{0};
-        double apart_sq{kInfinity}; ///< Difference from all chosen planes; 0: not a candidate.
+        /// Squared difference from the chosen planes; 0: no longer a candidate.
+        double apart_sq{kInfinity};
     };
     StaticVector<Candidate, kMaxHalfSpaces> candidates;
     for (std::uint32_t i = 0; i < spaces_.size(); ++i)
@@ -363,9 +364,9 @@ BodyPlanes::Chosen BodyPlanes::choose(const NearestMotion<6>& plain) const noexc
     return chosen;
 }
 
-/// Builds the pyramids of the chosen contacts. Contacts without capacity there are left to the
-/// plain planes and to the certificate.
-void BodyPlanes::tilt(const Chosen& chosen, const Motion<6>& wanted) noexcept
+/// Builds the friction pyramids of the chosen contacts, followed by the plain planes of the others,
+/// as many as fit.
+void RigidPlanes::tilt(const Chosen& chosen, const Motion<6>& wanted) noexcept
 {
     tilted_.clear();
     tilts_.clear();
@@ -384,11 +385,12 @@ void BodyPlanes::tilt(const Chosen& chosen, const Motion<6>& wanted) noexcept
     }
 }
 
-/// Tilts one contact's plane into four. Offsets are zero if the tool is too near: sticking is then
-/// always possible. The surface's own motion carries the pyramid's top along.
-void BodyPlanes::tilt(std::uint32_t touch, const Motion<6>& wanted) noexcept
+/// Tilts one contact's plane into the four planes of its pyramid. A plane that the tool is too near
+/// to gets an offset of 0, so that sticking is always possible. The surface's own motion moves the
+/// pyramid along.
+void RigidPlanes::tilt(std::uint32_t touch, const Motion<6>& wanted) noexcept
 {
-    const BodyGrip& grip = grips_[touch];
+    const RigidGrip& grip = grips_[touch];
     const Vec3& normal = touches_[touch].normal;
     const Vec3 lever = lever_m(touch) / arm_m_;
     const Vec3 way = wanted.head<3>() + wanted.tail<3>().cross(lever) - grip.way_m;
@@ -406,8 +408,9 @@ void BodyPlanes::tilt(std::uint32_t touch, const Motion<6>& wanted) noexcept
     }
 }
 
-/// True if no pushing tilted plane lifts the tool: it lifts by the slip times the coefficient.
-bool BodyPlanes::is_stuck(const NearestMotion<6>& tilted) const noexcept
+/// True if no pushing tilted plane lifts the tool; a slipping tool is lifted by the slip times the
+/// coefficient.
+bool RigidPlanes::is_stuck(const NearestMotion<6>& tilted) const noexcept
 {
     return std::ranges::all_of(tilted.held_by,
                                [&](std::uint32_t plane)
@@ -423,9 +426,9 @@ bool BodyPlanes::is_stuck(const NearestMotion<6>& tilted) const noexcept
                                });
 }
 
-BodyMotion BodyPlanes::stuck(const NearestMotion<6>& tilted) noexcept
+RigidMotion RigidPlanes::stuck(const NearestMotion<6>& tilted) noexcept
 {
-    BodyMotion answer;
+    RigidMotion answer;
     answer.sticks = true;
     for (std::size_t i = 0; i < tilted.held_by.size(); ++i)
     {
@@ -434,14 +437,15 @@ BodyMotion BodyPlanes::stuck(const NearestMotion<6>& tilted) noexcept
             plane < tilts_.size() ? tilts_[plane].touch : untilted_[plane - tilts_.size()];
         answer.pushes.push_back({touch, tilted_[plane].normal, tilted.reactions[i]});
     }
-    // Restrains contacts without capacity above, and those that the tool is too near to.
+    // The plain planes also restrain contacts that did not fit above, and those that the tool is
+    // too near to.
     const NearestMotion<6> free = plain(tilted.motion, answer.is_over_constrained);
     answer.motion = free.motion;
     return answer;
 }
 
-/// Share of that friction that the planes' pressure allows.
-double BodyPlanes::share_of(const NearestMotion<6>& plain, double most) const noexcept
+/// Share of the friction `most` that the pressure of the planes allows, 0 .. 1.
+double RigidPlanes::share_of(const NearestMotion<6>& plain, double most) const noexcept
 {
     double sum = 0.0;
     for (std::size_t i = 0; i < plain.held_by.size(); ++i)
@@ -451,7 +455,7 @@ double BodyPlanes::share_of(const NearestMotion<6>& plain, double most) const no
     return sum < most ? sum / most : 1.0;
 }
 
-BodyMotion BodyPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& wanted) noexcept
+RigidMotion RigidPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& wanted) noexcept
 {
     Motion<6> drag = Motion<6>::Zero();
     double most = 0.0;
@@ -460,12 +464,12 @@ BodyMotion BodyPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& 
         const std::uint32_t plane = tilted.held_by[i];
         if (plane < tilts_.size())
         {
-            const BodyGrip& grip = grips_[tilts_[plane].touch];
+            const RigidGrip& grip = grips_[tilts_[plane].touch];
             drag += tilted.reactions[i] * grip.dynamic / grip.friction * tilts_[plane].drag;
             most += tilted.reactions[i] * grip.dynamic;
         }
     }
-    BodyMotion answer;
+    RigidMotion answer;
     answer.slides = true;
     NearestMotion<6> held = plain(wanted + drag, answer.is_over_constrained);
     if (share_of(held, most) < 1.0 - kSameFriction)
@@ -476,10 +480,9 @@ BodyMotion BodyPlanes::sliding(const NearestMotion<6>& tilted, const Motion<6>& 
     return answer;
 }
 
-/// Sets the motion and pushes of a body that the planes hold, with `drag` along them and the added
-/// viscosity.
-void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, const Motion<6>& drag,
-                     BodyMotion& answer) noexcept
+/// Sets motion and pushes of a tool that planes hold, with the friction `drag` and with viscosity.
+void RigidPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, const Motion<6>& drag,
+                      RigidMotion& answer) noexcept
 {
     NearestMotion<6> rubbed = held;
     Motion<6> all = drag;
@@ -502,7 +505,7 @@ void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, cons
     }
     answer.motion = rubbed.motion;
     const double pressure = pressure_of(rubbed);
-    // The pressing planes carry the drag, so that a push is a normal and its share of the drag.
+    // Each pressing plane carries a share of the drag, so a push is its normal plus that share.
     const Motion<6> part = pressure > 0.0 ? Motion<6>(all / pressure) : Motion<6>::Zero();
     answer.pushes.clear();
     for (std::size_t i = 0; i < rubbed.held_by.size(); ++i)
@@ -512,17 +515,17 @@ void BodyPlanes::rub(const NearestMotion<6>& held, const Motion<6>& wanted, cons
     }
 }
 
-/// True if the plane touches, presses, and is viscous.
-bool BodyPlanes::drags(const NearestMotion<6>& held, std::size_t i) const noexcept
+/// True if holding plane `i` touches, presses and is viscous.
+bool RigidPlanes::drags(const NearestMotion<6>& held, std::size_t i) const noexcept
 {
     const std::uint32_t plane = held.held_by[i];
     return grips_[plane].viscous * held.reactions[i] > 0.0 &&
            spaces_[plane].offset >= -kTouchingGap * radius_m_;
 }
 
-/// Viscosity of the contacts, each by its share of the pressure; none if no contact drags.
-std::optional<BodyPlanes::Viscosity>
-BodyPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
+/// Viscosity of the contacts, each by its share of the pressure; none if no contact is viscous.
+std::optional<RigidPlanes::Viscosity>
+RigidPlanes::viscosity_of(const NearestMotion<6>& held) const noexcept
 {
     std::size_t first = 0;
     while (first < held.held_by.size() && !drags(held, first))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "rt_core/force/body_room.hpp"
+#include "rt_core/force/free_motion.hpp"
 
 #include <algorithm>
 
@@ -10,17 +10,18 @@ namespace tactus
 namespace
 {
 
-/// Largest used share of a proven distance. Half of the radius is kept: a tool that uses part of it
-/// can come back.
+/// Largest share of a proven distance that a motion may use, and share of the radius that it leaves
+/// as room to come back.
 constexpr double kMostOfDistance = 0.9;
 constexpr double kKeptOfRadius = 0.5;
-/// Share of the radius below which a distance is scarce.
+/// Distance, as a share of the radius, below which free motion is scarce.
 constexpr double kScarce = 0.1;
-/// Share of the core's radius below which two points define no direction.
+/// Distance of a slab, as a share of the core's radius, below which its direction is not trusted.
 constexpr double kLeastSlab = 1e-5;
 
-/// Free part of an exact distance. The less is left, the smaller the used share: a wedged tool
-/// approaches by one over the number of frames, and never to zero.
+/// Part of an exact distance that a motion may use. The less distance is left, the smaller the
+/// share used: the distance of a wedged tool shrinks like one over the number of frames and never
+/// reaches zero.
 double free_of(double distance_m, double radius_m) noexcept
 {
     const double scarcity = std::min(1.0, distance_m / (kScarce * radius_m));
@@ -36,8 +37,8 @@ double share_within(double length_m, double free_m) noexcept
 
 } // namespace
 
-BodyRoom::BodyRoom(std::span<const PlacedSurface> surfaces, double clear_m,
-                   double radius_m) noexcept
+FreeMotion::FreeMotion(std::span<const PlacedSurface> surfaces, double clear_m,
+                       double radius_m) noexcept
     : surfaces_(surfaces)
     , radius_m_(radius_m)
     , elsewhere_m_(std::min(clear_m - radius_m, kMostOfDistance * clear_m))
@@ -54,7 +55,7 @@ BodyRoom::BodyRoom(std::span<const PlacedSurface> surfaces, double clear_m,
     }
 }
 
-double BodyRoom::free_of(const PlacedSurface& placed) const noexcept
+double FreeMotion::free_of(const PlacedSurface& placed) const noexcept
 {
     const double lower_m = placed.lower_m;
     return is_known(placed.surface->answer.kind)
@@ -62,7 +63,7 @@ double BodyRoom::free_of(const PlacedSurface& placed) const noexcept
                : std::min(lower_m - radius_m_, kMostOfDistance * lower_m);
 }
 
-double BodyRoom::share_of(const BodyWay& way) const noexcept
+double FreeMotion::share_of(const RigidWay& way) const noexcept
 {
     double share = share_within(way.length_m(), elsewhere_m_);
     for (const PlacedSurface& placed : surfaces_)
@@ -72,7 +73,7 @@ double BodyRoom::share_of(const BodyWay& way) const noexcept
     return share;
 }
 
-double BodyRoom::share_of(const BodyWay& way, const PlacedSurface& placed) const noexcept
+double FreeMotion::share_of(const RigidWay& way, const PlacedSurface& placed) const noexcept
 {
     const double by_length = share_within(way.length_m(), free_of(placed));
     const DistanceAnswer& answer = placed.surface->answer;
@@ -83,10 +84,11 @@ double BodyRoom::share_of(const BodyWay& way, const PlacedSurface& placed) const
     }
     const double known_m =
         std::min(touches.covered_m, answer.certified_radius_m * placed.pose->scale);
-    // Rounding of the transforms to the world and back is already subtracted from L, as are errors.
+    // Slab distances lack the rounding of the transforms and the errors that are already subtracted
+    // from lower_m.
     const double off_m = std::max(0.0, answer.lower_m * placed.pose->scale - placed.lower_m) +
                          answer.tolerated_m * placed.pose->scale;
-    const double turn_m = way.turn_rad.norm() * way.core_radius_m;
+    const double turn_m = way.rotation_rad.norm() * way.core_radius_m;
     double share =
         std::min(share_within(turn_m, free_of(placed)),
                  share_within(way.length_m(), tactus::free_of(known_m - off_m, radius_m_)));

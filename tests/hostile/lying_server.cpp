@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// lying_host DOMAIN MODEL RADIUS_M ATTACK [NUMBER]: serves a model and shows it once, as the scene
-/// "toy". It reads telemetry and behaves correctly until a tool, a sphere of that radius, is at the
-/// attack's place; then it repeats the attack until told to end. Prints the number of attacks.
-/// Exits 2 if it cannot serve, 3 for an unknown ATTACK.
+/// lying_server DOMAIN MODEL RADIUS_M ATTACK [NUMBER]: serves a model and shows it once, as the
+/// scene "toy". It reads telemetry and behaves correctly until a tool, a sphere of that radius, is
+/// at the attack's place; then it repeats the attack until told to end. Prints the number of
+/// attacks. Exits 2 if it cannot serve, 3 for an unknown ATTACK.
 
 #include "platform/program/stop_signals.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <dds/dds.h>
@@ -51,12 +51,12 @@ struct Hand
     Vec3 away{0.0, 0.0, 1.0}; ///< Direction from the object to the tool.
 };
 
-class LyingHost
+class LyingServer
 {
 public:
-    LyingHost(std::unique_ptr<dds::DdsHost> host, std::unique_ptr<dds::TelemetryReader> reader,
-              double radius_m)
-        : host_(std::move(host)), reader_(std::move(reader)), radius_m_(radius_m)
+    LyingServer(std::unique_ptr<dds::DdsServer> server,
+                std::unique_ptr<dds::TelemetryReader> reader, double radius_m)
+        : server_(std::move(server)), reader_(std::move(reader)), radius_m_(radius_m)
     {
         come();
     }
@@ -68,12 +68,12 @@ public:
         const auto end = Clock::now() + time;
         do
         {
-            host_->wait(1ms);
+            server_->wait(1ms);
             if (!rests && Clock::now() - moved_ >= 4ms)
             {
                 put(at_m_);
             }
-            host_->step();
+            server_->step();
             reader_->poll();
         } while (Clock::now() < end && !is_stop_requested());
     }
@@ -93,18 +93,18 @@ public:
         moved_ = Clock::now();
         jitter_m_ = jitter_m_ > 0.0 ? 0.0 : 1e-7; // A pose equal to the last one is not sent.
         shown_.pose.translation_m = {at_m.x() + jitter_m_, at_m.y(), at_m.z()};
-        static_cast<void>(host_->objects().move(number_, shown_.pose));
+        static_cast<void>(server_->objects().move(number_, shown_.pose));
     }
     void feel(const Material& material)
     {
-        static_cast<void>(host_->objects().feel(number_, material));
+        static_cast<void>(server_->objects().feel(number_, material));
     }
-    void go() { host_->objects().remove(number_); }
+    void go() { server_->objects().remove(number_); }
     void come()
     {
         shown_.name = "toy";
-        shown_.model = host_->models()[0].store().hash();
-        number_ = host_->objects().show(shown_).value();
+        shown_.model = server_->models()[0].store().hash();
+        number_ = server_->objects().show(shown_).value();
         ++generation_;
     }
     [[nodiscard]] Hand hand() const
@@ -127,12 +127,12 @@ public:
         return hand;
     }
     [[nodiscard]] const Vec3& at_m() const { return at_m_; }
-    [[nodiscard]] dds::DdsHost& host() { return *host_; }
+    [[nodiscard]] dds::DdsServer& server() { return *server_; }
     [[nodiscard]] std::uint32_t number() const { return number_; }
     [[nodiscard]] std::uint32_t generation() const { return generation_; }
 
 private:
-    std::unique_ptr<dds::DdsHost> host_;
+    std::unique_ptr<dds::DdsServer> server_;
     std::unique_ptr<dds::TelemetryReader> reader_;
     double radius_m_;
     ShownObject shown_;
@@ -144,13 +144,13 @@ private:
 };
 
 /// Attack step, called after each received sample; returns true if it attacked.
-using Turn = std::function<bool(LyingHost& self, std::uint64_t turn)>;
-using Attack = std::function<Turn(LyingHost& self, double number)>;
+using Turn = std::function<bool(LyingServer& self, std::uint64_t turn)>;
+using Attack = std::function<Turn(LyingServer& self, double number)>;
 
 /// N1: moves towards a tool that is 0.2 to 4 mm away; between poses, and after a rest.
 Turn strike(double way_m)
 {
-    return [=](LyingHost& self, std::uint64_t turn)
+    return [=](LyingServer& self, std::uint64_t turn)
     {
         Hand hand = self.hand();
         if (!hand.is_there || hand.touches || hand.gap_m < 2e-4 || hand.gap_m > 4e-3)
@@ -172,7 +172,7 @@ Turn strike(double way_m)
 /// N12: moves with the hand on it, against it and away.
 Turn drag(double speed_m_per_s)
 {
-    return [=](LyingHost& self, std::uint64_t turn)
+    return [=](LyingServer& self, std::uint64_t turn)
     {
         const Hand hand = self.hand();
         if (!hand.touches)
@@ -194,7 +194,7 @@ Turn drag(double speed_m_per_s)
 /// N13: changes the material every 60 ms.
 Turn change_materials()
 {
-    return [](LyingHost& self, std::uint64_t turn)
+    return [](LyingServer& self, std::uint64_t turn)
     {
         if (!self.hand().touches)
         {
@@ -216,7 +216,7 @@ Turn change_materials()
 /// N15: adds and removes the object under the hand, five times a second.
 Turn come_and_go()
 {
-    return [](LyingHost& self, std::uint64_t)
+    return [](LyingServer& self, std::uint64_t)
     {
         if (!self.hand().is_there)
         {
@@ -231,13 +231,13 @@ Turn come_and_go()
 }
 
 /// N14: swings by 1 mm, with false time stamps.
-Turn lie_about_the_time(LyingHost& self)
+Turn lie_about_the_time(LyingServer& self)
 {
-    auto motion =
-        std::make_shared<dds::Endpoint>(dds::make_writer(self.host().domain(), dds::Topic::motion,
-                                                         dds::host_partition(self.host().epoch()))
-                                            .value());
-    return [motion](LyingHost& liar, std::uint64_t turn)
+    auto motion = std::make_shared<dds::Endpoint>(
+        dds::make_writer(self.server().domain(), dds::Topic::motion,
+                         dds::server_partition(self.server().epoch()))
+            .value());
+    return [motion](LyingServer& liar, std::uint64_t turn)
     {
         static constexpr std::array<std::int64_t, 6> kTimes{
             std::numeric_limits<std::int64_t>::min(),
@@ -253,9 +253,9 @@ Turn lie_about_the_time(LyingHost& self)
         moved.pose.translation_m[0] = turn % 2 == 0 ? 1e-3 : 0.0;
         moved.pose.scale = 1.0;
         tactus_v5_Motion sample = {};
-        sample.host_epoch = liar.host().epoch();
+        sample.server_epoch = liar.server().epoch();
         sample.serial = 1'000'000'000 + turn;
-        sample.host_time_ns = kTimes.at(turn / 3 % kTimes.size());
+        sample.server_time_ns = kTimes.at(turn / 3 % kTimes.size());
         sample.objects = 1;
         sample.moved = {1, 1, &moved, false};
         dds_write(motion->handle, &sample);
@@ -267,13 +267,13 @@ Turn lie_about_the_time(LyingHost& self)
 const std::map<std::string, Attack>& attacks()
 {
     static const std::map<std::string, Attack> all{
-        {"honest", [](LyingHost&, double)
-         { return [](LyingHost& self, std::uint64_t) { return self.hand().touches; }; }},
-        {"strike", [](LyingHost&, double way_m) { return strike(way_m); }},
-        {"drag", [](LyingHost&, double speed) { return drag(speed); }},
-        {"materials", [](LyingHost&, double) { return change_materials(); }},
-        {"come_and_go", [](LyingHost&, double) { return come_and_go(); }},
-        {"clock", [](LyingHost& self, double) { return lie_about_the_time(self); }},
+        {"honest", [](LyingServer&, double)
+         { return [](LyingServer& self, std::uint64_t) { return self.hand().touches; }; }},
+        {"strike", [](LyingServer&, double way_m) { return strike(way_m); }},
+        {"drag", [](LyingServer&, double speed) { return drag(speed); }},
+        {"materials", [](LyingServer&, double) { return change_materials(); }},
+        {"come_and_go", [](LyingServer&, double) { return come_and_go(); }},
+        {"clock", [](LyingServer& self, double) { return lie_about_the_time(self); }},
     };
     return all;
 }
@@ -285,7 +285,7 @@ int main(int argc, char** argv)
     const auto attack = argc >= 5 ? attacks().find(argv[4]) : attacks().end();
     if (attack == attacks().end())
     {
-        std::fprintf(stderr, "lying_host DOMAIN MODEL RADIUS_M ATTACK [NUMBER]; attacks:");
+        std::fprintf(stderr, "lying_server DOMAIN MODEL RADIUS_M ATTACK [NUMBER]; attacks:");
         for (const auto& [name, unused] : attacks())
         {
             std::fprintf(stderr, " %s", name.c_str());
@@ -297,25 +297,25 @@ int main(int argc, char** argv)
     auto store = ModelStore::open(argv[2]);
     if (!store)
     {
-        std::fprintf(stderr, "lying_host: %s\n", store.error().text.c_str());
+        std::fprintf(stderr, "lying_server: %s\n", store.error().text.c_str());
         return 2;
     }
     std::vector<dds::PublishedModel> models;
     models.push_back({"toy", std::move(store).value()});
-    auto host = dds::DdsHost::create(static_cast<std::uint32_t>(std::atoi(argv[1])),
-                                     std::move(models), {}, "toy");
-    if (!host)
+    auto server = dds::DdsServer::create(static_cast<std::uint32_t>(std::atoi(argv[1])),
+                                         std::move(models), {}, "toy");
+    if (!server)
     {
-        std::fprintf(stderr, "lying_host: %s\n", host.error().text.c_str());
+        std::fprintf(stderr, "lying_server: %s\n", server.error().text.c_str());
         return 2;
     }
-    auto reader = dds::TelemetryReader::create(host.value()->domain());
+    auto reader = dds::TelemetryReader::create(server.value()->domain());
     if (!reader)
     {
-        std::fprintf(stderr, "lying_host: %s\n", reader.error().text.c_str());
+        std::fprintf(stderr, "lying_server: %s\n", reader.error().text.c_str());
         return 2;
     }
-    LyingHost self(std::move(host).value(), std::move(reader).value(), std::atof(argv[3]));
+    LyingServer self(std::move(server).value(), std::move(reader).value(), std::atof(argv[3]));
     std::printf("ready on DDS domain\n");
     std::fflush(stdout);
     const Turn turn = attack->second(self, argc > 5 ? std::atof(argv[5]) : 0.0);

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# host_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the server of a scene behaves
+# server_strikes.sh BIN CHECK_REPORT SANITIZER LYING_HOST ATTACK: the server of a scene behaves
 # correctly until a tool is near its object. The force is checked period by period, in recordings,
 # on a device of the omega class and one of the touch class, compared with that of a correct server.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 source "$(dirname "$0")/force_figures.sh"
-readonly lying_host=$4 attack=${5#host_}
+readonly lying_server=$4 attack=${5#server_}
 readonly tool_m=0.002
 declare -A growth fall share excess
 # Greatest growth of a force in a period, in N. A dragged hand moves by 0.33 mm itself, and the law
@@ -21,23 +21,23 @@ readonly -A wall_n_per_m=([omega]=500 [touch]=400) slew_n=([omega]=0.12 [touch]=
 # NAME.csv, its figures in growth[NAME], fall[NAME], share[NAME] and excess[NAME].
 run_against() {
     local name=$1 device=$2
-    "$lying_host" "$domain" bumpy.spm "$tool_m" "${@:3}" >"$name-host.log" 2>&1 &
-    local host=$!
-    started+=("$host")
-    wait_for_line "$name-host.log" 'ready on DDS domain'
+    "$lying_server" "$domain" bumpy.spm "$tool_m" "${@:3}" >"$name-server.log" 2>&1 &
+    local server=$!
+    started+=("$server")
+    wait_for_line "$name-server.log" 'ready on DDS domain'
     start_hrtc --scene toy --device "sim:$device" --tool "sphere:$tool_m" --duration 6 \
         --wait "$patience_s" --report "$name.json" --record "$name.rec"
     end_hrtc
     cp hrtc.log "$name.log"
-    stop TERM "$host"
-    ((stopped_with == 0)) || fail "the host ended with $stopped_with: $(cat "$name-host.log")"
-    grep -Eq '^done [1-9]' "$name-host.log" || fail "it did nothing: $(cat "$name-host.log")"
+    stop TERM "$server"
+    ((stopped_with == 0)) || fail "the server ended with $stopped_with: $(cat "$name-server.log")"
+    grep -Eq '^done [1-9]' "$name-server.log" || fail "it did nothing: $(cat "$name-server.log")"
     check_clean "$name.json"
     export_force "$name"
     read -r "growth[$name]" "fall[$name]" "share[$name]" "excess[$name]" \
         < <(force_figures "$name.csv" "${wall_n_per_m[$device]}" "${slew_n[$device]}")
-    echo "$name: $(tail -n 1 "$name-host.log"), growth ${growth[$name]} N, fall ${fall[$name]} N," \
-        "in contact ${share[$name]}, beyond the law ${excess[$name]} N"
+    echo "$name: $(tail -n 1 "$name-server.log"), growth ${growth[$name]} N," \
+        "fall ${fall[$name]} N, in contact ${share[$name]}, beyond the law ${excess[$name]} N"
 }
 
 case $attack in

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/controller/host_topics.hpp"
+#include "platform/controller/server_topics.hpp"
 
 #include "rt_core/base/assert.hpp"
 
@@ -10,13 +10,13 @@
 namespace tactus::hrtc
 {
 
-Result<std::unique_ptr<HostTopics>, Refusal>
-HostTopics::create(dds::DdsClient& client, const Controller& controller,
-                   std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
-                   bool shows_refinement_state)
+Result<std::unique_ptr<ServerTopics>, Refusal>
+ServerTopics::create(dds::DdsClient& client, const Controller& controller,
+                     std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
+                     bool shows_refinement_state)
 {
-    std::unique_ptr<HostTopics> topics(
-        new HostTopics(client, controller, authorities, std::move(keeper)));
+    std::unique_ptr<ServerTopics> topics(
+        new ServerTopics(client, controller, authorities, std::move(keeper)));
     std::vector<ModelIdentity> identities;
     for (std::size_t i = 0; i < controller.models().size() && i < kMaxShownModels; ++i)
     {
@@ -43,8 +43,9 @@ HostTopics::create(dds::DdsClient& client, const Controller& controller,
     return topics;
 }
 
-HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controller,
-                       std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper)
+ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& controller,
+                           std::span<dds::Authority> authorities,
+                           std::unique_ptr<SceneKeeper> keeper)
     : client_(client)
     , controller_(controller)
     , authorities_(authorities)
@@ -53,8 +54,9 @@ HostTopics::HostTopics(const dds::DdsClient& client, const Controller& controlle
 {
 }
 
-void HostTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap, RefinementStateTap* front,
-                         MonotonicTime now, SceneKeeper::NameSink names)
+void ServerTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap,
+                           RefinementStateTap* front, MonotonicTime now,
+                           SceneKeeper::NameSink names)
 {
     tap_ = &tap;
     if (front_ != nullptr)
@@ -68,7 +70,7 @@ void HostTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap, Refinem
     }
 }
 
-void HostTopics::tell_begins_inside(std::size_t tool) noexcept
+void ServerTopics::tell_begins_inside(std::size_t tool) noexcept
 {
     if (front_ != nullptr)
     {
@@ -76,7 +78,7 @@ void HostTopics::tell_begins_inside(std::size_t tool) noexcept
     }
 }
 
-void HostTopics::step(MonotonicTime now)
+void ServerTopics::step(MonotonicTime now)
 {
     for (dds::Authority& authority : authorities_)
     {
@@ -97,7 +99,7 @@ void HostTopics::step(MonotonicTime now)
     }
 }
 
-std::vector<dds::PoseCounts> HostTopics::pose_counts() const
+std::vector<dds::PoseCounts> ServerTopics::pose_counts() const
 {
     std::vector<dds::PoseCounts> counts;
     for (std::size_t i = 0; keeper_ != nullptr && i < controller_.models().size(); ++i)
@@ -107,12 +109,12 @@ std::vector<dds::PoseCounts> HostTopics::pose_counts() const
     return counts;
 }
 
-SceneNewsCounts HostTopics::scene_news() const
+SceneNewsCounts ServerTopics::scene_news() const
 {
     return keeper_ != nullptr ? keeper_->news() : SceneNewsCounts{};
 }
 
-std::vector<dds::ServerEvent> HostTopics::server_events() const
+std::vector<dds::ServerEvent> ServerTopics::server_events() const
 {
     std::vector<dds::ServerEvent> events;
     for (const dds::Authority& authority : authorities_)
@@ -123,7 +125,7 @@ std::vector<dds::ServerEvent> HostTopics::server_events() const
     return events;
 }
 
-void HostTopics::send_telemetry(MonotonicTime now)
+void ServerTopics::send_telemetry(MonotonicTime now)
 {
     Telemetry telemetry;
     if (!tap_->try_read(telemetry))
@@ -141,11 +143,12 @@ void HostTopics::send_telemetry(MonotonicTime now)
     telemetry_->write(telemetry);
 }
 
-void HostTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now)
+void ServerTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry,
+                                      MonotonicTime now)
 {
     const WaitingTimes& waiting =
         controller_.chunk_loader().waiting_times(static_cast<std::uint32_t>(model));
-    telemetry.host_gone = controller_.models()[model].link->state() == LinkState::host_gone;
+    telemetry.server_gone = controller_.models()[model].link->state() == LinkState::server_gone;
     telemetry.pieces = waiting.total();
     Seen& seen = seen_[model];
     const auto news = static_cast<std::int64_t>(waiting.total() - seen.pieces);
@@ -160,13 +163,14 @@ void HostTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry
     }
 }
 
-/// Sets the host's epoch and number of the object, if a host shows it.
-void HostTopics::name_object(PairTelemetry& pair) const
+/// Replaces the controller's object number by the server's epoch and number, if a server shows the
+/// object.
+void ServerTopics::name_object(PairTelemetry& pair) const
 {
     const auto shown = keeper_ != nullptr ? keeper_->shown_as(pair.object) : std::nullopt;
     if (shown)
     {
-        pair.host_epoch = shown->host_epoch;
+        pair.server_epoch = shown->server_epoch;
         pair.object = shown->number;
     }
 }

@@ -14,15 +14,15 @@
 namespace tactus::test
 {
 
-inline constexpr double kBodyRadius = 0.002;
-inline constexpr double kBodyStiffness = 500.0;
+inline constexpr double kRigidRadius = 0.002;
+inline constexpr double kRigidStiffness = 500.0;
 inline const Vec3 kHalf(0.03, 0.02, 0.01);
 
-[[nodiscard]] inline ToolSpec tool_of(const ToolCore& core, double radius_m = kBodyRadius)
+[[nodiscard]] inline ToolSpec tool_of(const ToolCore& core, double radius_m = kRigidRadius)
 {
     ToolSpec spec;
     spec.radius_m = radius_m;
-    spec.stiffness_n_per_m = kBodyStiffness;
+    spec.stiffness_n_per_m = kRigidStiffness;
     spec.force_max_n = 1e3;
     spec.torque_max_nm = 1e3;
     spec.core = core;

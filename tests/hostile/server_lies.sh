@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# host_lies.sh BIN CHECK_REPORT SANITIZER ATTACK: a server behaves correctly until the tool touches
-# its model; checks the force afterwards.
+# server_lies.sh BIN CHECK_REPORT SANITIZER ATTACK: a server behaves correctly until the tool
+# touches its model; checks the force afterwards.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly attack=$4
 model bumpy-sphere-20000 bumpy.spm
@@ -28,7 +28,7 @@ check_starved() { # For data that the server cannot send: reported, and the forc
 }
 
 case $attack in
-    host_swings)
+    server_swings)
         # Motion by 4 mm to and fro, 250 times a second, for two of three seconds: 2 N a step at 500
         # N/m.
         awk 'BEGIN {
@@ -39,7 +39,7 @@ case $attack in
         poses=(--poses swing.txt --poses-loop)
         touch_it --motion slide
         end_well 2500
-        check report.json models.0.pose.rate_limited_frames '>' 100 wire.host_lost == 0
+        check report.json models.0.pose.rate_limited_frames '>' 100 wire.server_lost == 0
         # Steps of the force are checked by test_hrtc MovedObject, on a lasting touch: here the hand
         # sometimes releases, and the object it meets then moves freely, 1 mm a frame, with or
         # without the guard.
@@ -47,11 +47,11 @@ case $attack in
     file_cut)
         touch_it
         truncate -s 20000 bumpy.spm
-        wait_for_line hrtc.log "doesn't come; the surface there stays coarse"
+        wait_for_line hrtc.log "has not arrived; the surface there stays coarse"
         end_well 2500
         check_starved
         ;;
-    second_host)
+    second_server)
         # Another server has the same model, so it takes over when the first one ends, and then
         # sends nothing of it.
         touch_it
@@ -62,7 +62,7 @@ case $attack in
         start_publisher second/bumpy.spm --watch
         truncate -s 20000 second/bumpy.spm
         kill -KILL "$first"
-        wait_for_line hrtc.log "doesn't come; the surface there stays coarse"
+        wait_for_line hrtc.log "has not arrived; the surface there stays coarse"
         end_well 2500
         check_starved
         was_held_up report.json || check report.json force.max_step_n '<' 0.45

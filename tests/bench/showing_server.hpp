@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tests/bench/scenes.hpp"
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -16,26 +16,26 @@ namespace tactus::bench
 {
 
 /// Model server in its own thread, which shows objects and moves some of them 100 times a second.
-class ShowingHost
+class ShowingServer
 {
 public:
     /// Serves these files as "model-0" and so on; the objects in the scene "bench" show them in
     /// turn.
-    [[nodiscard]] static std::unique_ptr<ShowingHost>
+    [[nodiscard]] static std::unique_ptr<ShowingServer>
     start(std::uint32_t domain, const std::vector<std::filesystem::path>& files,
           std::uint32_t objects);
-    ~ShowingHost();
-    ShowingHost(const ShowingHost&) = delete;
-    ShowingHost& operator=(const ShowingHost&) = delete;
+    ~ShowingServer();
+    ShowingServer(const ShowingServer&) = delete;
+    ShowingServer& operator=(const ShowingServer&) = delete;
 
     /// Number of objects that move from now on, the first ones.
     void move(std::uint32_t objects) { moving_ = objects; }
 
 private:
-    explicit ShowingHost(std::unique_ptr<dds::DdsHost> host) : host_(std::move(host)) {}
+    explicit ShowingServer(std::unique_ptr<dds::DdsServer> server) : server_(std::move(server)) {}
     void run();
 
-    std::unique_ptr<dds::DdsHost> host_;
+    std::unique_ptr<dds::DdsServer> server_;
     std::atomic<std::uint32_t> moving_{0};
     std::atomic<bool> stop_{false};
     std::thread thread_;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# network_two_hosts.sh: two servers offer different files under one name. A controller stays with
+# network_two_servers.sh: two servers offer different files under one name. A controller stays with
 # the one that it discovered first or was pinned to, and is notified of the other; nothing is mixed.
 source "$(dirname "$0")/two_networks.sh"
 
@@ -10,7 +10,7 @@ model bumpy-sphere-60000 second.spm
 
 # check_touch FILE: the run of hrtc.log and run.rec touched this file, without pieces of others.
 check_touch() {
-    check report.json wire.host_lost == 0 safety.begun.host == 0 models.0.host_connected == 1
+    check report.json wire.server_lost == 0 safety.begun.server == 0 models.0.server_connected == 1
     check_wire_run report.json
     check_contact report.json force.contact_share 0.3
     judge_run "$1"
@@ -29,8 +29,8 @@ mv publish.log second.log
 wait_for_line hrtc.log "warning: model 'ball' is offered by a second server, spm_publish"
 wait_for_more_frames 500 first.log
 stop_hrtc
-(($(lines_of_host ball hrtc.log) == 1)) || fault 'not one line about the second host'
-[[ $(subscriptions second.log) == 0 ]] || fault 'the second host was asked'
+(($(lines_of_server ball hrtc.log) == 1)) || fault 'not one line about the second server'
+[[ $(subscriptions second.log) == 0 ]] || fault 'the second server was asked'
 check_touch first.spm
 "$judge_recording" run.rec second.spm >judged.json 2>/dev/null || fail 'it does not replay'
 check judged.json violations '>' 0 # The two are distinguishable.
@@ -52,5 +52,5 @@ which=first
 check_touch $which.spm
 stop_publisher
 stop TERM "$first"
-((stopped_with == 0)) || fault "the first host ended with $stopped_with"
+((stopped_with == 0)) || fault "the first server ended with $stopped_with"
 finish

@@ -7,7 +7,7 @@
 /// rendered wrench.
 
 #include "rt_core/limits.hpp"
-#include "tests/bench/body_cases.hpp"
+#include "tests/bench/sheet_tool_cases.hpp"
 #include "tests/bench/touch_motion.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"
@@ -66,7 +66,7 @@ constexpr std::array<SheetMesh, 8> kSheetMeshes{{{15, false, false},
                                                  {600, false, false},
                                                  {600, true, false}}};
 
-struct SheetBody
+struct SheetTool
 {
     const char* name;
     ToolCore shape; ///< Shape of the core; a point means the hull of the corners.
@@ -146,22 +146,22 @@ NamedMesh make_sheet(const SheetMesh& sheet)
     return named;
 }
 
-SheetBody sheet_box(const char* name, const Vec3& half_m)
+SheetTool sheet_box(const char* name, const Vec3& half_m)
 {
     return {name, Box{half_m}, box_corners(half_m), 5e-4, 2.0 * half_m.x()};
 }
 
-SheetBody sheet_capsule(const char* name, double length_m)
+SheetTool sheet_capsule(const char* name, double length_m)
 {
     const Vec3 end_m(0.5 * length_m, 0.0, 0.0);
     return {name, Segment{-end_m, end_m}, {-end_m, end_m}, 1e-3, length_m};
 }
 
 /// Hull with a flat base of ten corners and a wider top, rotated by half a corner.
-SheetBody sheet_hull(const char* name)
+SheetTool sheet_hull(const char* name)
 {
     constexpr int kSheetCorners = 10;
-    SheetBody body{name, PointCore{}, {}, 5e-4, 0.01};
+    SheetTool body{name, PointCore{}, {}, 5e-4, 0.01};
     for (int i = 0; i < 2 * kSheetCorners; ++i)
     {
         const bool is_top = i >= kSheetCorners;
@@ -173,7 +173,7 @@ SheetBody sheet_hull(const char* name)
     return body;
 }
 
-std::vector<SheetBody> sheet_bodies()
+std::vector<SheetTool> sheet_tools()
 {
     return {sheet_box("box of 8 mm", {4e-3, 4e-3, 4e-3}),
             sheet_box("box of 20 mm", {1e-2, 1e-2, 2e-3}), sheet_capsule("capsule of 12 mm", 0.012),
@@ -214,7 +214,7 @@ struct SheetFigures
     std::uint64_t impaired{0}; ///< Frames that are halted, over-constrained or without force.
     std::uint64_t capacity_exceeded{0}; ///< Frames in which the contact capacity is exceeded.
 
-    void see(const SheetBody& body, const ToolOutput& output, double plane_m)
+    void see(const SheetTool& body, const ToolOutput& output, double plane_m)
     {
         const Vec3& force_n = output.force_n;
         normal = std::max(normal, std::abs(force_n.z() / kSheetForce_n - 1.0));
@@ -227,7 +227,7 @@ struct SheetFigures
         capacity_exceeded += output.capacity_exceeded ? 1U : 0U;
         impaired += is_well ? 0U : 1U;
     }
-    void see_step(const SheetBody& body, const ToolOutput& before, const ToolOutput& now)
+    void see_step(const SheetTool& body, const ToolOutput& before, const ToolOutput& now)
     {
         const double step_n = (now.force_n - before.force_n).norm();
         const double step_nm = (now.torque_nm - before.torque_nm).norm();
@@ -236,7 +236,7 @@ struct SheetFigures
     }
 };
 
-void run_sheet(const CaseContext& context, const Scene& scene, const SheetBody& body)
+void run_sheet(const CaseContext& context, const Scene& scene, const SheetTool& body)
 {
     ToolSpec tool;
     tool.core = body.core();
@@ -291,7 +291,7 @@ void run_sheet(const CaseContext& context, const Scene& scene, const SheetBody& 
 
 } // namespace
 
-void run_body_sheets(const CaseContext& context)
+void run_sheet_tools(const CaseContext& context)
 {
     for (const SheetMesh& sheet : kSheetMeshes)
     {
@@ -300,7 +300,7 @@ void run_body_sheets(const CaseContext& context)
             continue;
         }
         const Scene& scene = context.scenes.get(make_sheet(sheet));
-        for (const SheetBody& body : sheet_bodies())
+        for (const SheetTool& body : sheet_tools())
         {
             run_sheet(context, scene, body);
         }

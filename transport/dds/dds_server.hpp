@@ -21,9 +21,9 @@ struct tactus_v5_Wanted; // idlc's type of a sample.
 namespace tactus::dds
 {
 
-/// Serves models on one DDS domain: announces them, sends pieces on request under the credit that
-/// each controller grants, and shows objects. One thread.
-class DdsHost
+/// Serves models on one DDS domain: announces them, sends requested pieces within the credit
+/// (CreditWindow) that each controller grants, and publishes objects. One thread.
+class DdsServer
 {
 public:
     /// Totals since the start, over all controllers.
@@ -32,9 +32,11 @@ public:
         std::uint64_t pieces_sent{0};
         std::uint64_t bytes_sent{0}; ///< Bytes of payload.
         std::uint64_t requests{0};
-        /// Requests with a bad name or an unknown piece, and those beyond the rate limit.
+        /// Requests for unknown pieces, from invalid or too many controllers, or beyond the rate
+        /// limit.
         std::uint64_t requests_refused{0};
-        std::uint64_t renewed{0}; ///< Replacements of writers that a controller did not receive.
+        /// Number of times that writers were replaced because a controller received nothing.
+        std::uint64_t renewed{0};
     };
     struct Subscriber
     {
@@ -43,29 +45,29 @@ public:
         std::uint64_t bytes_sent{0};
     };
 
-    /// Announces the models. Refused: more than kMaxModels, a base mesh that cannot be read, a
-    /// header too long for the wire, and the refusals of Domain::join(). `log` gets, at a limited
-    /// rate, a line when a controller arrives or leaves, and one for each failure or refusal.
-    /// `scene`, a valid name (unchecked), names all objects of the server together; empty: no
-    /// scene.
-    [[nodiscard]] static Result<std::unique_ptr<DdsHost>, Refusal>
+    /// Announces the models. Refused for more than kMaxModels, an unreadable base mesh, a header
+    /// too long for the wire, and as by Domain::join(). `log` gets, at a limited rate, a line for
+    /// each controller that arrives or leaves, each failure and each refusal. `scene` is a valid
+    /// name (unchecked) for all objects of the server together; empty: no scene.
+    [[nodiscard]] static Result<std::unique_ptr<DdsServer>, Refusal>
     create(std::uint32_t domain, std::vector<PublishedModel> models, Log log,
-           std::string scene = {}, Party party = Party::host);
+           std::string scene = {}, Party party = Party::server);
 
-    /// Waits until there is work, at most `timeout`. Signals do not end the wait.
+    /// Waits for a request or the next step() that is due, at most `timeout`. Signals do not end
+    /// it.
     void wait(std::chrono::milliseconds timeout);
-    /// Sends motion, takes requests, serves pieces, which reads the models' files, and announces
-    /// when due. Each takes some milliseconds at most: call it again at once when wait() returns.
-    /// The process that recently got the least is served first, and within it the controller that
-    /// did.
+    /// Sends motion, takes requests, sends pieces and announces models if due. Takes a few
+    /// milliseconds and reads the models' files. Call it again as soon as wait() returns. The
+    /// process with the fewest recent bytes is served first, and within it the controller with the
+    /// fewest.
     void step();
 
     [[nodiscard]] Counters counters() const;
     [[nodiscard]] std::vector<Subscriber> subscribers() const;
     [[nodiscard]] const std::vector<ModelPieces>& models() const noexcept { return models_; }
-    /// Publisher that shows, moves and removes objects of these models.
+    /// Publisher of the objects of these models.
     [[nodiscard]] ObjectPublisher& objects() noexcept { return *objects_; }
-    /// Epoch by which controllers identify this run of this server.
+    /// Epoch, which identifies this run of the server to controllers.
     [[nodiscard]] std::uint64_t epoch() const noexcept { return epoch_; }
     /// Domain for further topics of the same program; lives as long as the server.
     [[nodiscard]] const Domain& domain() const noexcept { return domain_; }
@@ -76,32 +78,33 @@ private:
     {
         not_wanted,
         waits,
-        under_way, ///< Admitted; the objects are in transit to the controller.
+        under_way, ///< The controller was admitted and receives the objects.
         done,
     };
-    /// All controllers of one process, by the name that it reports.
+    /// All controllers of one process, found by the process name in DDS.
     struct Process
     {
         std::string name;
-        std::uint64_t asked{0};     ///< Pieces requested in the last second.
-        double got_bytes{0.0};      ///< Bytes received recently; halved every 250 ms.
-        Clock::time_point let_in{}; ///< Time of its last admission.
+        std::uint64_t asked{0};     ///< Recently requested pieces; decays over about a second.
+        double got_bytes{0.0};      ///< Bytes recently sent to it; halved every 250 ms.
+        Clock::time_point let_in{}; ///< Time when one of its controllers was last admitted.
     };
     struct Client
     {
         Subscription subscription;
         std::shared_ptr<Process> process;
-        double got_bytes{0.0}; ///< Bytes received recently, like Process::got_bytes.
+        double got_bytes{0.0}; ///< Bytes recently sent to it; halved every 250 ms.
         Joining joining{Joining::not_wanted};
         Clock::time_point let_in{};
         std::uint64_t writer{0}; ///< Handle of the last request's writer.
-        std::uint64_t passed{0}; ///< Last step in which nothing could be sent to it.
+        std::uint64_t passed{0}; ///< Number of the last step() in which send_one() failed.
         Backoff motion_renewals{};
-        /// True if a program, perhaps another one, ended this controller's instance.
+        /// True if any program ended this controller's instance in DDS; look_for_gone() then
+        /// checks.
         bool is_disputed{false};
     };
 
-    DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene);
+    DdsServer(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene);
 
     [[nodiscard]] Result<Done, Refusal> open_endpoints();
     void announce();
@@ -114,9 +117,9 @@ private:
     [[nodiscard]] Client* add_client(const ControllerId& controller,
                                      const tactus_v5_Wanted& wanted);
     void on_end(const ControllerId& controller, std::uint64_t writer);
-    /// Removes controllers that are gone: a controller ends with its writer or its participant. If
-    /// an unknown participant wrote in a controller's name too, DDS reports no end while that
-    /// participant is present. Checks disputed controllers, and some others in turn.
+    /// Removes controllers whose writer or participant is gone. DDS may not report such an end if
+    /// an unknown participant also wrote in the controller's name. Checks all disputed controllers,
+    /// and the others in turn.
     void look_for_gone();
     void on_controller_gone(const ControllerId& controller);
     void forget();
@@ -137,7 +140,7 @@ private:
     std::unique_ptr<ObjectPublisher> objects_; ///< Valid after create().
     std::vector<Client> clients_;
     std::vector<std::shared_ptr<Process>> processes_;
-    std::size_t looked_at_{0}; ///< Next of clients_ for look_for_gone().
+    std::size_t looked_at_{0}; ///< First index into clients_ for the next look_for_gone().
     std::uint64_t steps_{0};
     bool has_more_work_{false};
     Clock::time_point last_announced_{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/spm_publish/host_metrics.hpp"
+#include "host_tools/spm_publish/server_metrics.hpp"
 
 #include "host_tools/web/prometheus_text.hpp"
 #include "transport/content_hash.hpp"
@@ -16,47 +16,47 @@ namespace
 
 constexpr std::chrono::seconds kPeriod{1};
 
-void tell_models(web::PrometheusText& text, const dds::DdsHost& host)
+void tell_models(web::PrometheusText& text, const dds::DdsServer& server)
 {
     const auto tell = [&](const char* name, const char* help, auto value)
     {
         text.family(name, "gauge", help);
-        for (const dds::ModelPieces& model : host.models())
+        for (const dds::ModelPieces& model : server.models())
         {
             text.sample({{"model", model.model().name}, {"hash", hash_text(model.store().hash())}},
                         static_cast<double>(value(model.store().header().fields())));
         }
     };
-    tell("tactus_model_faces", "Faces of the source of a model that is served.",
+    tell("tactus_model_faces", "Faces of the source mesh of a served model.",
          [](const HeaderFields& fields) { return fields.source_faces; });
-    tell("tactus_model_bytes", "Bytes of its file.",
+    tell("tactus_model_bytes", "Bytes of the file of a served model.",
          [](const HeaderFields& fields) { return fields.file_bytes; });
 }
 
-void tell_subscribers(web::PrometheusText& text, const dds::DdsHost& host)
+void tell_subscribers(web::PrometheusText& text, const dds::DdsServer& server)
 {
-    const std::vector<dds::DdsHost::Subscriber> subscribers = host.subscribers();
+    const std::vector<dds::DdsServer::Subscriber> subscribers = server.subscribers();
     const auto tell = [&](const char* name, const char* help, auto value)
     {
         text.family(name, "counter", help);
-        for (const dds::DdsHost::Subscriber& subscriber : subscribers)
+        for (const dds::DdsServer::Subscriber& subscriber : subscribers)
         {
             text.sample({{"subscriber", subscriber.controller}},
                         static_cast<double>(value(subscriber)));
         }
     };
-    tell("tactus_subscriber_pieces_sent_total", "Pieces sent to a controller that is here.",
+    tell("tactus_subscriber_pieces_sent_total", "Pieces sent to a subscribed controller.",
          [](const auto& subscriber) { return subscriber.pieces_sent; });
-    tell("tactus_subscriber_bytes_sent_total", "Payload sent to it.",
+    tell("tactus_subscriber_bytes_sent_total", "Payload bytes sent to a subscribed controller.",
          [](const auto& subscriber) { return subscriber.bytes_sent; });
 }
 
 } // namespace
 
-std::string host_metrics(dds::DdsHost& host, const dds::TelemetryReader& controllers)
+std::string server_metrics(dds::DdsServer& server, const dds::TelemetryReader& controllers)
 {
     web::PrometheusText text;
-    const dds::DdsHost::Counters counters = host.counters();
+    const dds::DdsServer::Counters counters = server.counters();
     const auto tell =
         [&text](const char* name, const char* type, const char* help, std::uint64_t value)
     {
@@ -65,21 +65,21 @@ std::string host_metrics(dds::DdsHost& host, const dds::TelemetryReader& control
     };
     tell("tactus_pieces_sent_total", "counter", "Pieces of models sent to controllers.",
          counters.pieces_sent);
-    tell("tactus_bytes_sent_total", "counter", "Payload sent to controllers.", counters.bytes_sent);
-    tell("tactus_requests_total", "counter", "Requests of controllers.", counters.requests);
-    tell("tactus_requests_refused_total", "counter", "Requests that were refused.",
+    tell("tactus_bytes_sent_total", "counter", "Payload bytes sent to controllers.",
+         counters.bytes_sent);
+    tell("tactus_requests_total", "counter", "Requests from controllers.", counters.requests);
+    tell("tactus_requests_refused_total", "counter", "Refused requests from controllers.",
          counters.requests_refused);
     tell("tactus_writers_renewed_total", "counter",
-         "Times that writers were replaced for controllers that they did not reach.",
-         counters.renewed);
+         "Replacements of DDS writers that did not reach their controllers.", counters.renewed);
     tell("tactus_participants", "gauge", "DDS participants on the domain.",
-         host.domain().participants().count());
-    tell("tactus_subscribers", "gauge", "Controllers that this host serves.",
-         host.subscribers().size());
-    tell("tactus_objects_shown", "gauge", "Objects that this host shows.",
-         host.objects().objects());
-    tell_models(text, host);
-    tell_subscribers(text, host);
+         server.domain().participants().count());
+    tell("tactus_subscribers", "gauge", "Controllers served by this server.",
+         server.subscribers().size());
+    tell("tactus_objects_shown", "gauge", "Objects shown by this server.",
+         server.objects().objects());
+    tell_models(text, server);
+    tell_subscribers(text, server);
     std::vector<const dds::WatchedController*> watched;
     for (const dds::WatchedController& controller : controllers.controllers())
     {
@@ -89,13 +89,13 @@ std::string host_metrics(dds::DdsHost& host, const dds::TelemetryReader& control
     return text.text();
 }
 
-void HostMetrics::update(dds::DdsHost& host, const dds::TelemetryReader& controllers)
+void ServerMetrics::update(dds::DdsServer& server, const dds::TelemetryReader& controllers)
 {
     const auto now = Clock::now();
     if (now - last_ >= kPeriod)
     {
         last_ = now;
-        server_->publish(host_metrics(host, controllers));
+        page_->publish(server_metrics(server, controllers));
     }
 }
 

@@ -26,7 +26,7 @@ namespace tactus::bench
 
 /// Rigid tools that lie, slide and rotate on flat sheets of any cell size, where force and torque
 /// are known.
-void run_body_sheets(const CaseContext& context);
+void run_sheet_tools(const CaseContext& context);
 
 /// Tools of a centimetre on dense meshes: how often they have a force, and how accurate it is.
 void run_dense_meshes(const CaseContext& context);

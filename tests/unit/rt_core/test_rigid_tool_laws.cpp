@@ -5,8 +5,9 @@
 /// The oracles are the laws of statics, of a spring, a damper and Coulomb, and a texture's energy.
 
 #include "rt_core/force/texture.hpp"
-#include "tests/unit/rt_core/body_rig.hpp"
+#include "tests/shared/trial_length.hpp"
 #include "tests/unit/rt_core/proxy_rig.hpp"
+#include "tests/unit/rt_core/rigid_tool_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +73,7 @@ struct SphereTool
 struct Block
 {
     using Rig = test::Rig;
-    static constexpr double kRest_m = 0.01 + kBodyRadius;
+    static constexpr double kRest_m = 0.01 + kRigidRadius;
     static constexpr double kPlace_m = 1e-7;
     static constexpr double kBalance_m = 2e-6;
     static constexpr double kRoom = 0.02;
@@ -93,7 +94,7 @@ struct Block
                                               {-0.03, -0.02, 0.01}, {-0.03, 0, -0.01},
                                               {0.03, -0.02, -0.01}, {0.03, 0.02, -0.01}};
         return {{tool_of(Box{kHalf}), kRest_m},
-                {tool_of(Segment{{-0.03, 0, 0}, {0.03, 0, 0}}), kBodyRadius},
+                {tool_of(Segment{{-0.03, 0, 0}, {0.03, 0, 0}}), kRigidRadius},
                 {tool_of(Hull::create(kWedge).value()), kRest_m}};
     }
     static Kind on_bumps() { return kinds()[0]; }
@@ -118,7 +119,7 @@ struct Block
 };
 
 template <typename Body>
-class BodyLaws : public testing::Test
+class RigidToolLaws : public testing::Test
 {
 protected:
     using Rig = typename Body::Rig;
@@ -174,7 +175,7 @@ protected:
 };
 
 using Bodies = testing::Types<SphereTool, Block>;
-TYPED_TEST_SUITE(BodyLaws, Bodies);
+TYPED_TEST_SUITE(RigidToolLaws, Bodies);
 
 Material rubbing(double static_friction, double dynamic_friction)
 {
@@ -184,7 +185,7 @@ Material rubbing(double static_friction, double dynamic_friction)
     return material;
 }
 
-TYPED_TEST(BodyLaws, in_free_flight_is_where_the_hand_is_without_a_force)
+TYPED_TEST(RigidToolLaws, in_free_flight_is_where_the_hand_is_without_a_force)
 {
     for (const double step_m : {0.002, 1.0}) // The longer steps need space without objects.
     {
@@ -207,7 +208,7 @@ TYPED_TEST(BodyLaws, in_free_flight_is_where_the_hand_is_without_a_force)
     }
 }
 
-TYPED_TEST(BodyLaws, pressed_flat_stays_flat_pushes_by_its_depth_and_is_let_go_at_once)
+TYPED_TEST(RigidToolLaws, pressed_flat_stays_flat_pushes_by_its_depth_and_is_let_go_at_once)
 {
     for (const auto& [spec, rest_m] : TypeParam::kinds())
     {
@@ -235,7 +236,7 @@ TYPED_TEST(BodyLaws, pressed_flat_stays_flat_pushes_by_its_depth_and_is_let_go_a
     }
 }
 
-TYPED_TEST(BodyLaws, frozen_in_contact_stays_with_its_force_says_so_never_pulls_and_comes_back)
+TYPED_TEST(RigidToolLaws, frozen_in_contact_stays_with_its_force_says_so_never_pulls_and_comes_back)
 {
     auto rig = this->over({{plane()}});
     const Vec3 goal = this->at(0, 0, 0.008);
@@ -267,7 +268,8 @@ TYPED_TEST(BodyLaws, frozen_in_contact_stays_with_its_force_says_so_never_pulls_
     expect_vector(this->hold(rig, Vec3(0, 0, 0.1)).proxy_m, Vec3(0, 0, 0.1), kRest * kRadius);
 }
 
-TYPED_TEST(BodyLaws, an_object_that_moves_pushes_it_along_and_one_that_would_run_over_it_takes_it)
+TYPED_TEST(RigidToolLaws,
+           an_object_that_moves_pushes_it_along_and_one_that_would_run_over_it_takes_it)
 {
     for (const double speed : {0.1, 2.0, 50.0})
     {
@@ -289,7 +291,7 @@ TYPED_TEST(BodyLaws, an_object_that_moves_pushes_it_along_and_one_that_would_run
     }
 }
 
-TYPED_TEST(BodyLaws, squeezed_between_objects_says_so_and_stays)
+TYPED_TEST(RigidToolLaws, squeezed_between_objects_says_so_and_stays)
 {
     const double room_m = 2.0 * TypeParam::kRest_m;
     ObjectPose high;
@@ -318,7 +320,7 @@ TYPED_TEST(BodyLaws, squeezed_between_objects_says_so_and_stays)
     EXPECT_GT(over_constrained, 200);
 }
 
-TYPED_TEST(BodyLaws, the_softer_of_tool_and_object_is_the_spring)
+TYPED_TEST(RigidToolLaws, the_softer_of_tool_and_object_is_the_spring)
 {
     for (const double stiffness : {50.0, 200.0, 3'500.0})
     {
@@ -337,7 +339,7 @@ TYPED_TEST(BodyLaws, the_softer_of_tool_and_object_is_the_spring)
         EXPECT_GE(output.force_n.z(), 0.99 * softer * 0.004);
         if constexpr (TypeParam::kTurns)
         {
-            const double arm = kHalf.norm() + kBodyRadius;
+            const double arm = kHalf.norm() + kRigidRadius;
             const double held_rad = turned_between(tilted, output.proxy_rotation).norm();
             EXPECT_NEAR(output.torque_nm.norm(), softer * arm * arm * held_rad,
                         0.02 * output.torque_nm.norm());
@@ -345,7 +347,7 @@ TYPED_TEST(BodyLaws, the_softer_of_tool_and_object_is_the_spring)
     }
 }
 
-TYPED_TEST(BodyLaws, damping_is_of_the_motion_across_the_surface_and_never_pulls)
+TYPED_TEST(RigidToolLaws, damping_is_of_the_motion_across_the_surface_and_never_pulls)
 {
     Material material;
     material.damping_n_s_per_m = 8.0;
@@ -363,7 +365,7 @@ TYPED_TEST(BodyLaws, damping_is_of_the_motion_across_the_surface_and_never_pulls
     EXPECT_NEAR(pushed_n({0, 0, 10.0}), 0.0, 1e-9) << "a hand that tears itself away";
 }
 
-TYPED_TEST(BodyLaws, sticks_and_slides_at_the_angle_of_friction)
+TYPED_TEST(RigidToolLaws, sticks_and_slides_at_the_angle_of_friction)
 {
     for (const double friction : {0.1, 0.3, 0.6, 1.0})
     {
@@ -381,7 +383,7 @@ TYPED_TEST(BodyLaws, sticks_and_slides_at_the_angle_of_friction)
     }
 }
 
-TYPED_TEST(BodyLaws, sliding_meets_coulombs_force_against_the_motion_and_sticks_again)
+TYPED_TEST(RigidToolLaws, sliding_meets_coulombs_force_against_the_motion_and_sticks_again)
 {
     for (const double step_m : {1e-5, 1e-4, 5e-4})
     {
@@ -403,7 +405,7 @@ TYPED_TEST(BodyLaws, sliding_meets_coulombs_force_against_the_motion_and_sticks_
     }
 }
 
-TYPED_TEST(BodyLaws, what_sticks_does_not_move_by_a_bit_for_a_minute)
+TYPED_TEST(RigidToolLaws, what_sticks_does_not_move_by_a_bit_for_a_minute)
 {
     auto rig = this->on_plane(rubbing(0.5, 0.4));
     const Vec3 hand = this->at(0.0008, -0.0005, 0.004);
@@ -420,7 +422,7 @@ TYPED_TEST(BodyLaws, what_sticks_does_not_move_by_a_bit_for_a_minute)
     }
 }
 
-TYPED_TEST(BodyLaws, friction_takes_it_along_with_an_object_that_slides)
+TYPED_TEST(RigidToolLaws, friction_takes_it_along_with_an_object_that_slides)
 {
     auto rig = this->on_plane(rubbing(0.5, 0.3));
     const Vec3 hand = this->at(0, 0, 0.004);
@@ -440,7 +442,7 @@ TYPED_TEST(BodyLaws, friction_takes_it_along_with_an_object_that_slides)
     EXPECT_NEAR(output.force_n.x(), 0.3 * output.force_n.z(), 1e-2);
 }
 
-TYPED_TEST(BodyLaws, viscosity_drags_with_viscosity_times_speed_beside_friction_and_lets_go)
+TYPED_TEST(RigidToolLaws, viscosity_drags_with_viscosity_times_speed_beside_friction_and_lets_go)
 {
     for (const double viscosity : {0.5, 2.0, 10.0})
     {
@@ -475,7 +477,7 @@ TYPED_TEST(BodyLaws, viscosity_drags_with_viscosity_times_speed_beside_friction_
     }
 }
 
-TYPED_TEST(BodyLaws, viscosity_lets_go_of_a_hand_at_rest_as_spring_and_damper_do)
+TYPED_TEST(RigidToolLaws, viscosity_lets_go_of_a_hand_at_rest_as_spring_and_damper_do)
 {
     Material material;
     material.viscosity_n_s_per_m = 5.0;
@@ -496,7 +498,7 @@ TYPED_TEST(BodyLaws, viscosity_lets_go_of_a_hand_at_rest_as_spring_and_damper_do
         << "never more than the spring";
 }
 
-TYPED_TEST(BodyLaws, viscosity_takes_a_resting_hand_along_with_a_surface_that_slides)
+TYPED_TEST(RigidToolLaws, viscosity_takes_a_resting_hand_along_with_a_surface_that_slides)
 {
     Material material;
     material.viscosity_n_s_per_m = 4.0;
@@ -543,7 +545,7 @@ ObjectPose random_pose(Random& random)
     return pose;
 }
 
-TYPED_TEST(BodyLaws, a_texture_is_felt_where_spring_and_bumps_are_in_balance)
+TYPED_TEST(RigidToolLaws, a_texture_is_felt_where_spring_and_bumps_are_in_balance)
 {
     const Material material = bumpy(6e-5, 2.5e-3);
     const Kind kind = TypeParam::on_bumps();
@@ -576,10 +578,10 @@ TYPED_TEST(BodyLaws, a_texture_is_felt_where_spring_and_bumps_are_in_balance)
     EXPECT_LT(most_n, kStiffness * material.texture_length_m * 0.05);
 }
 
-TYPED_TEST(BodyLaws, a_texture_makes_no_energy_on_closed_ways_and_turns)
+TYPED_TEST(RigidToolLaws, a_texture_makes_no_energy_on_closed_ways_and_turns)
 {
     const Kind kind = TypeParam::on_bumps();
-    for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    for (std::uint64_t seed = 1; seed <= trial_length(4); ++seed)
     {
         const auto work_over = [&](const Material& material, const ObjectPose& pose)
         {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/dds/dds_host.hpp"
+#include "transport/dds/dds_server.hpp"
 
 #include "transport/base/printable.hpp"
 #include "transport/content_hash.hpp"
@@ -22,41 +22,39 @@ namespace tactus::dds
 namespace
 {
 
-/// Interval of the catalogue: after a stall, controllers may have taken the server for dead.
+/// Interval of announce(), which also reaches controllers that took a stalled server for gone.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
 constexpr auto kLookForGone = std::chrono::milliseconds(50);
-/// Number of checks in which each controller is checked once.
+/// Number of calls of look_for_gone() in which each controller is checked once.
 constexpr std::size_t kLooks = 20;
 /// Maximum number of controllers; each has up to four DDS writers, about 400 KB.
 constexpr std::size_t kMaxClients = 1'024;
-/// Controllers that receive all objects at the same time: too many make each other lose samples,
-/// which are then sent again and again.
+/// Maximum number of controllers that receive all objects at the same time. More of them make each
+/// other lose samples.
 constexpr std::size_t kMaxJoining = 2;
-/// Silence after which a controller is treated as joined, so that it does not block others; the
-/// second applies if others wait. A controller has 4,096 objects after some 50 ms.
+/// Time after its admission at which a controller counts as joined, so that it does not block
+/// others; the second value applies if others wait. Sending 4,096 objects takes about 50 ms.
 constexpr auto kJoiningMax = std::chrono::seconds(5);
 constexpr auto kJoiningMaxBeforeOthers = std::chrono::seconds(1);
-/// Interval at which an admission is repeated: the first may have been sent before the controller
-/// listened.
+/// Interval at which an admission is repeated, since the controller's reader may have missed it.
 constexpr auto kLetInAgain = std::chrono::milliseconds(100);
-/// Log lines a second about controllers that arrive and leave.
+/// Maximum number of log lines a second about controllers that arrive or leave.
 constexpr std::uint32_t kVisitLines = 40;
-/// Time limits of a step for requests and for pieces, so that poses go out every 10 ms under any
-/// number of requests. The remainder waits for the next step; of requests, Cyclone keeps 16 a
-/// controller and delivers them in turn.
+/// Time limits for requests and for pieces in one step, so that poses go out every 10 ms under any
+/// load. The rest waits for the next step. Cyclone keeps the last 16 requests of each controller.
 constexpr auto kRequestsMax = std::chrono::milliseconds(2);
 constexpr auto kServingMax = std::chrono::milliseconds(4);
-/// Pieces that one process may request in a second. A controller has 256 requests and repeats each
-/// four times a second; headers of 256 models, 64 parts each, are requested ten times.
+/// Maximum number of pieces that one process may request in a second. A controller repeats up to
+/// 256 requests four times a second; 256 models' headers of 64 parts each are requested ten times.
 constexpr std::uint64_t kAskedMax = 262'144;
-/// Half-life of the bytes that a controller received, for the order of service.
+/// Half-life of the counts of recently sent bytes, which determine the order of service.
 constexpr auto kHalfLife = std::chrono::milliseconds(250);
-/// Cost of a sample beyond its pieces, in bytes.
+/// Cost of a sample in the order of service, in bytes, in addition to its pieces.
 constexpr double kASample = 1'000.0;
-/// Wait while a controller's reader is not present yet.
+/// Maximum wait while a controller with requests has no reader for pieces yet.
 constexpr auto kMatchWait = std::chrono::milliseconds(2);
 
-/// Printable form of the name that a controller reports.
+/// Controller's name in a request, made printable.
 std::string name_of(const tactus_v5_Wanted& wanted)
 {
     return printable(text_of(wanted.controller_name));
@@ -64,14 +62,15 @@ std::string name_of(const tactus_v5_Wanted& wanted)
 
 } // namespace
 
-Result<std::unique_ptr<DdsHost>, Refusal> DdsHost::create(std::uint32_t domain,
-                                                          std::vector<PublishedModel> models,
-                                                          Log log, std::string scene, Party party)
+Result<std::unique_ptr<DdsServer>, Refusal> DdsServer::create(std::uint32_t domain,
+                                                              std::vector<PublishedModel> models,
+                                                              Log log, std::string scene,
+                                                              Party party)
 {
     if (models.size() > kMaxModels)
     {
         return Refusal{
-            fmt::format("{} models; a host serves at most {}", models.size(), kMaxModels)};
+            fmt::format("{} models; a server serves at most {}", models.size(), kMaxModels)};
     }
     auto joined = Domain::join(domain, party);
     if (!joined)
@@ -88,16 +87,16 @@ Result<std::unique_ptr<DdsHost>, Refusal> DdsHost::create(std::uint32_t domain,
         }
         served.push_back(std::move(pieces).value());
     }
-    std::unique_ptr<DdsHost> host(new DdsHost(std::move(joined).value(), std::move(served),
-                                              std::move(log), std::move(scene)));
-    if (auto done = host->open_endpoints(); !done)
+    std::unique_ptr<DdsServer> server(new DdsServer(std::move(joined).value(), std::move(served),
+                                                    std::move(log), std::move(scene)));
+    if (auto done = server->open_endpoints(); !done)
     {
         return done.error();
     }
-    return host;
+    return server;
 }
 
-DdsHost::DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene)
+DdsServer::DdsServer(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene)
     : domain_(std::move(domain))
     , models_(std::move(models))
     , scene_(std::move(scene))
@@ -109,7 +108,7 @@ DdsHost::DdsHost(Domain domain, std::vector<ModelPieces> models, Log log, std::s
     room_.piece.reserve(kPartBytes);
 }
 
-void DdsHost::wait(std::chrono::milliseconds timeout)
+void DdsServer::wait(std::chrono::milliseconds timeout)
 {
     if (has_more_work_)
     {
@@ -129,7 +128,7 @@ void DdsHost::wait(std::chrono::milliseconds timeout)
     dds_waitset_wait(waitset_.get(), nullptr, 0, longest.count());
 }
 
-void DdsHost::step()
+void DdsServer::step()
 {
     ++steps_;
     has_more_work_ = false;
@@ -141,7 +140,7 @@ void DdsHost::step()
         last_looked_ = now;
         look_for_gone();
         static_cast<void>(std::ranges::find_if(clients_, [this](Client& client)
-                                               // One controller a step.
+                                               // At most one controller a step.
                                                { return try_heal(client); }));
     }
     if (now - last_forgot_ >= kHalfLife)
@@ -158,7 +157,7 @@ void DdsHost::step()
     objects_->step();
 }
 
-DdsHost::Counters DdsHost::counters() const
+DdsServer::Counters DdsServer::counters() const
 {
     Counters counters = counters_;
     for (const Client& client : clients_)
@@ -169,7 +168,7 @@ DdsHost::Counters DdsHost::counters() const
     return counters;
 }
 
-std::vector<DdsHost::Subscriber> DdsHost::subscribers() const
+std::vector<DdsServer::Subscriber> DdsServer::subscribers() const
 {
     std::vector<Subscriber> list;
     for (const Client& client : clients_)
@@ -181,7 +180,7 @@ std::vector<DdsHost::Subscriber> DdsHost::subscribers() const
     return list;
 }
 
-Result<Done, Refusal> DdsHost::open_endpoints()
+Result<Done, Refusal> DdsServer::open_endpoints()
 {
     std::vector<ContentHash> hashes;
     for (const ModelPieces& model : models_)
@@ -213,7 +212,7 @@ Result<Done, Refusal> DdsHost::open_endpoints()
     return Done{};
 }
 
-void DdsHost::announce()
+void DdsServer::announce()
 {
     domain_.participants().report(fault_log_);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
@@ -221,7 +220,7 @@ void DdsHost::announce()
         const ModelStore& store = models_[i].store();
         const HeaderFields& fields = store.header().fields();
         tactus_v5_CatalogueEntry entry = {};
-        entry.host_epoch = epoch_;
+        entry.server_epoch = epoch_;
         entry.model = i;
         models_[i].model().name.copy(static_cast<char*>(entry.name), kMaxNameBytes);
         scene_.copy(static_cast<char*>(entry.scene), kMaxNameBytes);
@@ -234,7 +233,7 @@ void DdsHost::announce()
     last_announced_ = Clock::now();
 }
 
-void DdsHost::take_requests(Clock::time_point end)
+void DdsServer::take_requests(Clock::time_point end)
 {
     const auto take = [this](const tactus_v5_Wanted& wanted, const dds_sample_info_t& info)
     {
@@ -264,7 +263,7 @@ void DdsHost::take_requests(Clock::time_point end)
     }
 }
 
-void DdsHost::on_request(const ControllerId& controller, const tactus_v5_Wanted& wanted)
+void DdsServer::on_request(const ControllerId& controller, const tactus_v5_Wanted& wanted)
 {
     Client* client = find(controller);
     client = client == nullptr ? add_client(controller, wanted) : client;
@@ -295,21 +294,22 @@ void DdsHost::on_request(const ControllerId& controller, const tactus_v5_Wanted&
     take_requests(*client, wanted);
 }
 
-/// Handles a controller that hears this server but no motion: a packet in the writer's name with a
-/// much later sample number, forged or not, makes its reader drop the real ones.
-void DdsHost::renew_motion(Client& client)
+/// Handles a controller that receives no motion although the server is present. A packet with a
+/// much later sample number in a writer's name, perhaps forged, makes readers drop the writer's
+/// samples.
+void DdsServer::renew_motion(Client& client)
 {
     const auto now = Clock::now();
     if (client.motion_renewals.is_due(now) && objects_->try_renew_motion(now))
     {
         client.motion_renewals.begin(now);
         ++counters_.renewed;
-        fault_log_.write(fmt::format("controller {} hears no motion: another writer tells of it",
+        fault_log_.write(fmt::format("controller {} receives no motion: a new writer sends it now",
                                      client.subscription.controller_name()));
     }
 }
 
-bool DdsHost::try_heal(Client& client)
+bool DdsServer::try_heal(Client& client)
 {
     auto old = client.subscription.try_heal(Clock::now());
     if (old == nullptr)
@@ -318,12 +318,12 @@ bool DdsHost::try_heal(Client& client)
     }
     domain_.disposal().dispose(std::move(old));
     ++counters_.renewed;
-    fault_log_.write(fmt::format("pieces don't reach controller {}: other writers send them",
+    fault_log_.write(fmt::format("pieces don't reach controller {}: new writers send them now",
                                  client.subscription.controller_name()));
     return true;
 }
 
-void DdsHost::take_requests(Client& client, const tactus_v5_Wanted& wanted)
+void DdsServer::take_requests(Client& client, const tactus_v5_Wanted& wanted)
 {
     const std::uint32_t asked = wanted.pieces._length;
     client.process->asked += asked;
@@ -345,13 +345,14 @@ void DdsHost::take_requests(Client& client, const tactus_v5_Wanted& wanted)
     }
 }
 
-void DdsHost::refuse(const ControllerId& controller, Refused reason)
+void DdsServer::refuse(const ControllerId& controller, Refused reason)
 {
     ++counters_.requests_refused;
     domain_.participants().refusals().count(controller, reason);
 }
 
-DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactus_v5_Wanted& wanted)
+DdsServer::Client* DdsServer::add_client(const ControllerId& controller,
+                                         const tactus_v5_Wanted& wanted)
 {
     const std::string name = name_of(wanted);
     if (!is_valid_name(name)) // The name becomes a partition.
@@ -362,8 +363,8 @@ DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactu
     }
     if (clients_.size() == kMaxClients)
     {
-        fault_log_.write(
-            fmt::format("controller {} is refused: {} are the limit", name, kMaxClients));
+        fault_log_.write(fmt::format("controller {} is refused: at most {} controllers are served",
+                                     name, kMaxClients));
         return nullptr;
     }
     auto created = Subscription::create(domain_, controller, name, wanted.seen);
@@ -384,14 +385,14 @@ DdsHost::Client* DdsHost::add_client(const ControllerId& controller, const tactu
     }
     clients_.push_back({std::move(created).value(), *process});
     visits_log_.write(fmt::format("controller {} subscribed{}", name,
-                                  has_namesake ? "; another one of this name is here" : ""));
+                                  has_namesake ? "; another controller has this name" : ""));
     return &clients_.back();
 }
 
-/// Handles the end of an instance, as Catalogue does: another program cannot end a controller, but
-/// triggers a check. A controller that falls silent, or loses only one of its writers, stays until
-/// its lease ends.
-void DdsHost::on_end(const ControllerId& controller, std::uint64_t writer)
+/// Handles the end of a controller in DDS. Another program cannot end the controller, but triggers
+/// a check. A controller that is silent, or loses one of several writers, stays until its lease
+/// ends.
+void DdsServer::on_end(const ControllerId& controller, std::uint64_t writer)
 {
     Participants& participants = domain_.participants();
     const bool is_its_own = participants.writer_of(writer) == controller;
@@ -410,7 +411,7 @@ void DdsHost::on_end(const ControllerId& controller, std::uint64_t writer)
     }
 }
 
-void DdsHost::look_for_gone()
+void DdsServer::look_for_gone()
 {
     std::vector<ControllerId> gone;
     const std::size_t turn_end = looked_at_ + clients_.size() / kLooks + 1;
@@ -430,7 +431,7 @@ void DdsHost::look_for_gone()
     std::ranges::for_each(gone, [this](const ControllerId& each) { on_controller_gone(each); });
 }
 
-void DdsHost::on_controller_gone(const ControllerId& controller)
+void DdsServer::on_controller_gone(const ControllerId& controller)
 {
     Client* client = find(controller);
     if (client == nullptr)
@@ -447,8 +448,9 @@ void DdsHost::on_controller_gone(const ControllerId& controller)
     clients_.erase(clients_.begin() + (client - clients_.data()));
 }
 
-/// Halves the recent counts; called every kHalfLife.
-void DdsHost::forget()
+/// Halves the counts of recent bytes, lowers those of requested pieces by a quarter, and removes
+/// processes without controllers. Called every kHalfLife.
+void DdsServer::forget()
 {
     constexpr auto kTimesInASecond = std::chrono::seconds(1) / kHalfLife;
     std::erase_if(processes_, [](const auto& process) { return process.use_count() == 1; });
@@ -463,9 +465,9 @@ void DdsHost::forget()
     }
 }
 
-/// The controller that got least, in the process that got least recently; null if this step has
-/// nothing more to send.
-DdsHost::Client* DdsHost::next_to_serve()
+/// Controller with the fewest recent bytes, in the process with the fewest; null if no controller
+/// can be sent more in this step.
+DdsServer::Client* DdsServer::next_to_serve()
 {
     Client* next = nullptr;
     for (Client& client : clients_)
@@ -481,7 +483,7 @@ DdsHost::Client* DdsHost::next_to_serve()
     return next;
 }
 
-void DdsHost::serve(Clock::time_point end)
+void DdsServer::serve(Clock::time_point end)
 {
     while (Client* client = next_to_serve())
     {
@@ -503,9 +505,9 @@ void DdsHost::serve(Clock::time_point end)
     }
 }
 
-/// Admits controllers that wait for objects, kMaxJoining at a time. Processes with fewest
-/// admissions under way go first, then the process and the controller with the oldest admission.
-void DdsHost::let_in()
+/// Admits waiting controllers while fewer than kMaxJoining receive objects. Controllers of the
+/// processes with the fewest such receivers go first, then those with the oldest admission.
+void DdsServer::let_in()
 {
     const auto now = Clock::now();
     const bool do_others_wait =
@@ -550,7 +552,7 @@ void DdsHost::let_in()
     }
 }
 
-DdsHost::Client* DdsHost::find(const ControllerId& controller)
+DdsServer::Client* DdsServer::find(const ControllerId& controller)
 {
     const auto client = std::ranges::find_if(
         clients_, [&](const Client& each) { return each.subscription.controller() == controller; });

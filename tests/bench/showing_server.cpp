@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/bench/showing_host.hpp"
+#include "tests/bench/showing_server.hpp"
 
 #include <fmt/format.h>
 
@@ -26,9 +26,9 @@ Pose place_of(std::uint32_t object)
 
 } // namespace
 
-std::unique_ptr<ShowingHost> ShowingHost::start(std::uint32_t domain,
-                                                const std::vector<std::filesystem::path>& files,
-                                                std::uint32_t objects)
+std::unique_ptr<ShowingServer> ShowingServer::start(std::uint32_t domain,
+                                                    const std::vector<std::filesystem::path>& files,
+                                                    std::uint32_t objects)
 {
     std::vector<dds::PublishedModel> models;
     for (const std::filesystem::path& file : files)
@@ -36,22 +36,22 @@ std::unique_ptr<ShowingHost> ShowingHost::start(std::uint32_t domain,
         auto store = needed(ModelStore::open(file));
         models.push_back({fmt::format("model-{}", models.size()), std::move(store)});
     }
-    auto made = needed(dds::DdsHost::create(domain, std::move(models), {}, "bench"));
-    std::unique_ptr<ShowingHost> showing(new ShowingHost(std::move(made)));
-    dds::DdsHost& host = *showing->host_;
+    auto made = needed(dds::DdsServer::create(domain, std::move(models), {}, "bench"));
+    std::unique_ptr<ShowingServer> showing(new ShowingServer(std::move(made)));
+    dds::DdsServer& server = *showing->server_;
     for (std::uint32_t i = 0; i < objects; ++i)
     {
         ShownObject object;
         object.name = fmt::format("object-{}", i);
-        object.model = host.models()[i % host.models().size()].store().hash();
+        object.model = server.models()[i % server.models().size()].store().hash();
         object.pose = place_of(i);
-        needed(host.objects().show(object));
+        needed(server.objects().show(object));
     }
     showing->thread_ = std::thread([&self = *showing] { self.run(); });
     return showing;
 }
 
-ShowingHost::~ShowingHost()
+ShowingServer::~ShowingServer()
 {
     stop_ = true;
     if (thread_.joinable())
@@ -60,7 +60,7 @@ ShowingHost::~ShowingHost()
     }
 }
 
-void ShowingHost::run()
+void ShowingServer::run()
 {
     using Clock = std::chrono::steady_clock;
     auto due = Clock::now();
@@ -68,7 +68,7 @@ void ShowingHost::run()
     while (!stop_)
     {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(due - Clock::now());
-        host_->wait(std::max(left, std::chrono::milliseconds(0)));
+        server_->wait(std::max(left, std::chrono::milliseconds(0)));
         if (Clock::now() >= due)
         {
             due += kMoveEvery;
@@ -78,10 +78,10 @@ void ShowingHost::run()
             {
                 Pose pose = place_of(i);
                 pose.translation_m[2] += kStep_m * (steps % 100);
-                static_cast<void>(host_->objects().move(i, pose));
+                static_cast<void>(server_->objects().move(i, pose));
             }
         }
-        host_->step();
+        server_->step();
     }
 }
 
