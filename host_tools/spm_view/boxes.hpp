@@ -28,8 +28,9 @@ inline constexpr std::uint32_t kTreeLevelsMax = 24;
 tree_box_bytes(const DecodedModel& model, std::span<const RefinementStatePage> pages,
                std::uint32_t level);
 
-/// Influence boxes of chunks, which must ascend: a sphere outside of a box needs nothing of its
-/// chunk. Waits for missing index pages (KnownModel::bring). Refused if the model lacks a chunk.
+/// Influence boxes of these chunks, as the page reads boxes (tree_box_bytes()). A tool's sphere
+/// outside of a box needs no record of its chunk. The chunk ids must ascend. Waits for missing
+/// index pages (KnownModel::bring). Refused if the model lacks a chunk.
 [[nodiscard]] Result<std::string, Refusal> chunk_box_bytes(KnownModel& model,
                                                            std::span<const ChunkId> chunks);
 /// Chunk numbers of the pages.

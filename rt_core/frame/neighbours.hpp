@@ -64,7 +64,8 @@ private:
     /// BroadPhase::lists() at the last frame in which every listed object had a pair; 0: some have
     /// none.
     std::uint32_t paired_lists_{0};
-    /// Largest displacement in this frame of an object without a pair with the tool.
+    /// Farthest way, for each tool, of an object without a pair with the tool, within the tool's
+    /// reach since the last frame, in m. It bounds how much nearer such an object may be.
     std::array<double, kMaxTools> leap_m_{};
     bool has_streamed_models_{false};
 };

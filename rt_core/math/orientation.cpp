@@ -60,7 +60,8 @@ double size_of_terms(const Triple<double>& terms, const Triple<double>& w) noexc
     return std::abs(w.x) * terms.x + std::abs(w.y) * terms.y + std::abs(w.z) * terms.z;
 }
 
-/// True if rounding can't have changed the sign of a computed determinant.
+/// True if rounding can't have changed the sign of a computed determinant; `size` is the sum of the
+/// magnitudes of its products. Below kLeastTrusted the products may have underflowed.
 bool is_sign_known(double value, double size) noexcept
 {
     return std::abs(value) > kVolumeError * size && size > kLeastTrusted;

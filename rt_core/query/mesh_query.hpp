@@ -58,11 +58,10 @@ struct MeshMemory
     bool operator==(const MeshMemory&) const noexcept = default;
 };
 
-// The three functions answer questions about the active faces of two models, in the object's frame.
-// The tool's faces count as exact at their placed corners, of which each coordinate is rounded once
-// or twice. Single precision with proven bounds sorts out pairs of faces, and open cases are
-// decided exactly. The budget bounds the whole search, and the answer includes unvisited parts.
-// Haptic thread.
+// Each function of this header compares the active faces of two models, in the object's frame. The
+// tool's faces are taken as exact where rounding has placed their corners. Single precision with
+// proven bounds excludes pairs of faces; the rest is decided exactly. If the budget ends the
+// search, the bounds of the answer also hold for the faces that were not visited. Haptic thread.
 
 /// Finds distance, nearest points, meeting faces and contacts.
 ///

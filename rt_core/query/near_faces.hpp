@@ -46,7 +46,7 @@ public:
     /// Coarse faces of one block that may be within the bound.
     struct Block
     {
-        std::uint32_t index{kNoNode}; ///< Index of the block; none for loose faces.
+        std::uint32_t index{kNoNode}; ///< Block of the AB-Tree; kNoNode: faces without one.
         std::uint32_t lanes{0};
         /// Gaps of these lanes, in quanta of the other model.
         std::array<float, kBlockFaces> gaps{};
