@@ -2,18 +2,13 @@
 // Copyright the Tactus authors.
 #include "tests/interleave/fiber.hpp"
 
+#include "tests/shared/sanitizers.hpp"
+
 #include <cstdint>
 #include <utility>
 
 // The address sanitizer must be notified of every change of the stack.
-#if defined(__SANITIZE_ADDRESS__)
-#define TACTUS_TELLS_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define TACTUS_TELLS_SANITIZER
-#endif
-#endif
-#ifdef TACTUS_TELLS_SANITIZER
+#if TACTUS_HAS_ADDRESS_SANITIZER
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -25,7 +20,7 @@ namespace
 
 void begin_switch(void** own, const void* to, std::size_t bytes)
 {
-#ifdef TACTUS_TELLS_SANITIZER
+#if TACTUS_HAS_ADDRESS_SANITIZER
     __sanitizer_start_switch_fiber(own, to, bytes);
 #else
     static_cast<void>(own);
@@ -36,7 +31,7 @@ void begin_switch(void** own, const void* to, std::size_t bytes)
 
 void end_switch(void* own, const void** from, std::size_t* bytes)
 {
-#ifdef TACTUS_TELLS_SANITIZER
+#if TACTUS_HAS_ADDRESS_SANITIZER
     __sanitizer_finish_switch_fiber(own, from, bytes);
 #else
     static_cast<void>(own);

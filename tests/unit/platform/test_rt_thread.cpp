@@ -4,6 +4,7 @@
 #include "platform/machine/posix/memory_lock.hpp"
 #include "platform/machine/rt_thread.hpp"
 #include "platform/machine/thread_usage.hpp"
+#include "tests/shared/sanitizers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -114,14 +115,7 @@ int exit_status_without_privilege(rlim_t rtprio, rlim_t memlock, const Check& ch
 /// True if a sanitizer replaces mlockall, which then never refuses and locks nothing.
 constexpr bool mlockall_is_replaced()
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    return true;
-#elif defined(__has_feature)
-    return __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) ||
-           __has_feature(memory_sanitizer);
-#else
-    return false;
-#endif
+    return TACTUS_HAS_ADDRESS_SANITIZER != 0 || TACTUS_HAS_THREAD_SANITIZER != 0;
 }
 
 bool contains(const std::string& text, const std::string& part)

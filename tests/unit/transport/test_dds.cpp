@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "tests/shared/sanitizers.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
 #include "tests/unit/transport/queue_side.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
@@ -31,7 +32,7 @@
 #include <unistd.h>
 #include <vector>
 
-#if defined(__SANITIZE_ADDRESS__)
+#if TACTUS_HAS_ADDRESS_SANITIZER
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -55,7 +56,7 @@ const std::array<ModelSelector, 1> kTiny{ModelSelector{"tiny"}};
 /// sanitizer ignores this thread's allocations for its lifetime.
 struct CycloneLosesMemory
 {
-#if defined(__SANITIZE_ADDRESS__)
+#if TACTUS_HAS_ADDRESS_SANITIZER
     const __lsan::ScopedDisabler unseen;
 #endif
 };

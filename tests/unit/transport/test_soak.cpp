@@ -9,6 +9,7 @@
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/frame_verdict.hpp"
+#include "tests/shared/sanitizers.hpp"
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/hardships.hpp"
 #include "tests/stability/random_motion.hpp"
@@ -27,7 +28,7 @@
 #include <string>
 #include <unistd.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if TACTUS_HAS_ADDRESS_SANITIZER || TACTUS_HAS_THREAD_SANITIZER
 #define TACTUS_HEAP_IS_A_SANITIZER_S
 /// Some compilers lack <sanitizer/allocator_interface.h>.
 extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
