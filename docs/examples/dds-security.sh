@@ -143,4 +143,4 @@ configure() { # configure ROLE: ROLE.xml, the settings with the role's security.
 role server catalogue chunks objects motion -- wanted telemetry refinement_state catalogue
 role controller wanted telemetry refinement_state -- catalogue chunks objects motion
 rm -f -- *.csr openssl.log
-echo "$PWD/host.xml and $PWD/controller.xml are for CYCLONEDDS_URI"
+echo "$PWD/server.xml and $PWD/controller.xml are for CYCLONEDDS_URI"

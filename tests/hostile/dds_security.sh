@@ -22,7 +22,7 @@ multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General>
 
 bash "$keys" roles >keys.log || fail "the keys: $(cat keys.log)"
 model bumpy-sphere-20000 bumpy.spm
-CYCLONEDDS_URI=file://$PWD/roles/host.xml start_publisher bumpy.spm
+CYCLONEDDS_URI=file://$PWD/roles/server.xml start_publisher bumpy.spm
 CYCLONEDDS_URI=file://$PWD/roles/controller.xml start_hrtc --model bumpy --name hand --no-static \
     --device sim:touch --duration 600 --wait "$patience_s" --report report.json
 wait_for_line publish.log 'controller hand subscribed'
@@ -53,7 +53,7 @@ stop_publisher
 
 # A restarted server has the same certificate and counts as the same one, without --failover.
 secured_publisher() {
-    CYCLONEDDS_URI=file://$PWD/roles/host.xml start_publisher bumpy.gltf --scene toy --watch
+    CYCLONEDDS_URI=file://$PWD/roles/server.xml start_publisher bumpy.gltf --scene toy --watch
 }
 cat >bumpy.gltf <<'GLTF'
 {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
