@@ -9,7 +9,7 @@
 namespace tactus::test
 {
 
-/// True if long trials are run in full, as in CI: with TACTUS_TRIALS=full in the environment.
+/// True if long trials are run in full: with TACTUS_TRIALS=full in the environment.
 [[nodiscard]] inline bool has_full_trials()
 {
     const char* text = std::getenv("TACTUS_TRIALS");
