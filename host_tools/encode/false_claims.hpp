@@ -36,7 +36,7 @@ struct ClaimsFound
 /// whether it is closed, its extent, the largest depth and error bound, regions, influence boxes of
 /// chunks and pages, buckets. Error bounds are checked against samples of the source: a false bound
 /// may be missed, a true one is never reported. Rounding to the grid cannot be checked, since only
-/// the author has the original mesh. Some 3 us and 100 B a face.
+/// the author has the original mesh. About 3 us and 100 B a face.
 [[nodiscard]] ClaimsFound find_false_claims(const ModelStore& store, const DecodedModel& model,
                                             const ClaimCheck& check = {});
 

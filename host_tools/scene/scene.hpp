@@ -25,7 +25,7 @@ class Scene
 {
 public:
     /// Reads .gltf and .glb with 1 to kMaxObjects objects, at least one of them touched. Costs the
-    /// file's bytes and some 100 bytes for each value of its JSON, which are bounded too; of the
+    /// file's bytes and about 100 bytes for each value of its JSON, which are bounded too; of the
     /// buffers only those with the poses of instances are read.
     [[nodiscard]] static Result<Scene, Refusal> open(const std::filesystem::path& path);
 

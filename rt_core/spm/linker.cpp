@@ -187,7 +187,7 @@ void Linker::settle(Seat seat) noexcept
         ++looks_;
         if (is_linked_at(now))
         {
-            mend_next(now);
+            repair_next(now);
         }
         else if (try_link(now))
         {
@@ -253,7 +253,7 @@ bool Linker::is_free_for(RecordId id, const VsplitRecord& record) const noexcept
 
 /// Sets the pending `next` of a linked record's owners after one of them returned, and waits for
 /// the next absent owner.
-void Linker::mend_next(Seat seat) noexcept
+void Linker::repair_next(Seat seat) noexcept
 {
     const VsplitRecord& record = record_at(seat);
     RecordId missing{};

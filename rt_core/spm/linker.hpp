@@ -163,7 +163,7 @@ private:
     void settle(Seat seat) noexcept;
     [[nodiscard]] bool try_link(Seat seat) noexcept;
     void link(Seat seat, const VsplitRecord& record, const StarRing& ring) noexcept;
-    void mend_next(Seat seat) noexcept;
+    void repair_next(Seat seat) noexcept;
     void wait_for(Seat seat, RecordId awaited) noexcept;
     void wake_waiting(RecordId linked) noexcept;
     void stop_waiting(Seat seat) noexcept;

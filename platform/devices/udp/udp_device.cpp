@@ -72,8 +72,8 @@ std::string words_of(DatagramFault fault, std::span<const std::byte> bytes)
     return fault == DatagramFault::content && wrong != nullptr ? words + ": " + wrong : words;
 }
 
-Refusal nobody_came(const udp::Socket& socket, const udp::Session& session, Duration wait,
-                    std::uint64_t refused, const std::string& last)
+Refusal no_driver(const udp::Socket& socket, const udp::Session& session, Duration wait,
+                  std::uint64_t refused, const std::string& last)
 {
     const std::string within = " within " + std::to_string(wait / milliseconds(1)) + " ms";
     if (session.peer().is_attached && session.rival())
@@ -159,7 +159,7 @@ std::optional<Refusal> await_device(const udp::Socket& socket, udp::Session& ses
         asked = is_to_ask ? now : asked;
         if (now >= end || (is_to_ask && options.goes_on && !options.goes_on()))
         {
-            return nobody_came(socket, session, std::min(now - start, options.wait), refused, last);
+            return no_driver(socket, session, std::min(now - start, options.wait), refused, last);
         }
         socket.wait(std::min(end - now, is_attached ? kAnswerEvery : UdpDeviceOptions::kAskEvery));
     }

@@ -65,7 +65,7 @@ std::string state_in_words(const Interface& interface)
     return name + (interface.has_link ? " is up" : " is up without a link");
 }
 
-std::string mend(const Interface& interface)
+std::string remedy_for(const Interface& interface)
 {
     const std::string name = shell_word(interface.name);
     if (!interface.is_there)
@@ -98,7 +98,7 @@ Finding judge_named(Finding finding, const SystemFiles& files,
             continue;
         }
         finding.verdict = Verdict::critical;
-        finding.remedy.push_back(mend(interface));
+        finding.remedy.push_back(remedy_for(interface));
     }
     return finding;
 }
