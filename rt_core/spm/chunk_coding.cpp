@@ -78,8 +78,7 @@ Result<Done, SpmRefusal> parse_chunk(std::span<const std::byte> bytes, const Mod
         }
         page.records[place] = waiting_form(coded);
     }
-    return decoder.has_bytes_left() ? Result<Done, SpmRefusal>(SpmRefusal::trailing_bytes)
-                                         : Done{};
+    return decoder.has_bytes_left() ? Result<Done, SpmRefusal>(SpmRefusal::trailing_bytes) : Done{};
 }
 
 std::uint32_t chunk_checksum(std::span<const std::byte> code, ChunkId id) noexcept
