@@ -27,6 +27,10 @@ AwakePairs::AwakePairs(Arena& arena, std::span<const ToolSpec> tools, std::uint3
     {
         free_.push_back(i - 1);
     }
+    if (arena.is_measuring())
+    {
+        return; // Its spans have no memory.
+    }
     for (PairFront& front : memory_.fronts) // NOLINT(misc-const-correctness): it is lent.
     {
         free_fronts_.push_back(&front);
