@@ -32,13 +32,13 @@ Vec3 rotation_between(const Mat3& from, const Mat3& to) noexcept
                       : rotation_vector(orthonormalised(to * from.transpose()));
 }
 
-/// Expected displacement of a tool's body (Proxy, RigidProxy or Follower) in a frame; infinite if
+/// Expected displacement of a tool's proxy (Proxy, RigidProxy or Follower) in a frame; infinite if
 /// it has no expectation.
-double likely_way_m(const auto& body) noexcept
+double likely_way_m(const auto& proxy) noexcept
 {
-    if constexpr (requires { body.likely_way_m(); })
+    if constexpr (requires { proxy.likely_way_m(); })
     {
-        return body.likely_way_m();
+        return proxy.likely_way_m();
     }
     else
     {
@@ -49,13 +49,13 @@ double likely_way_m(const auto& body) noexcept
 } // namespace
 
 Tool::Tool(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
-    : spec_(spec), state_(make_state(spec, planes))
+    : spec_(spec), proxy_(make_proxy(spec, planes))
 {
     const PlacedCore core(spec.core, Similarity{});
     sphere_ = {core.center(), core.radius()};
 }
 
-Tool::State Tool::make_state(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
+Tool::AnyProxy Tool::make_proxy(const ToolSpec& spec, RigidProxy::Planes* planes) noexcept
 {
     if (is_held_as_rigid(spec))
     {
@@ -69,19 +69,19 @@ Tool::State Tool::make_state(const ToolSpec& spec, RigidProxy::Planes* planes) n
     return Proxy(spec);
 }
 
-/// Calls `function` with the alternative in `body`, like std::visit, which may throw.
+/// Calls `function` with the alternative in `any`, like std::visit, which may throw.
 template <typename Function>
-auto Tool::with(auto& body, const Function& function) noexcept
+auto Tool::with(auto& any, const Function& function) noexcept
 {
-    if (auto* proxy = std::get_if<Proxy>(&body); proxy != nullptr)
+    if (auto* proxy = std::get_if<Proxy>(&any); proxy != nullptr)
     {
         return function(*proxy);
     }
-    if (auto* rigid = std::get_if<RigidProxy>(&body); rigid != nullptr)
+    if (auto* rigid = std::get_if<RigidProxy>(&any); rigid != nullptr)
     {
         return function(*rigid);
     }
-    return function(*std::get_if<Follower>(&body));
+    return function(*std::get_if<Follower>(&any));
 }
 
 FrameFault Tool::begin(const ToolState& sample, double period_s,
@@ -96,13 +96,13 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     const FrameFault fault = take(sample);
     is_still_ = fault == FrameFault::none && objects.empty() && !lost_object_ && !leapt_by_ &&
                 goal_ == last && goal_.velocity_m_per_s == Vec3(0.0, 0.0, 0.0);
-    with(state_,
-         [&](auto& body)
+    with(proxy_,
+         [&](auto& proxy)
          {
-             body.see(goal_);
-             let_carry(body, objects);
+             proxy.see(goal_);
+             let_carry(proxy, objects);
              way_left_m_ = spec_.speed_max_m_per_s * goal_.elapsed_s;
-             stand(body);
+             stand(proxy);
          });
     began_m_ = sphere().center;
     // A mesh in contact is refined ahead by its own motion (MeshPair).
@@ -111,41 +111,41 @@ FrameFault Tool::begin(const ToolState& sample, double period_s,
     return fault;
 }
 
-/// Lets moved objects carry the body, and measures the motion; without near objects there is
+/// Lets moved objects carry the proxy, and measures the motion; without near objects there is
 /// nothing to measure.
-void Tool::let_carry(auto& body, std::span<const NearObject> objects) noexcept
+void Tool::let_carry(auto& proxy, std::span<const NearObject> objects) noexcept
 {
     has_motion_ = !objects.empty();
     if (!has_motion_)
     {
-        body.carry(objects, goal_.elapsed_s);
+        proxy.carry(objects, goal_.elapsed_s);
         return;
     }
     motion_ = motion_of(objects);
-    const Similarity before = body.place();
-    body.carry(objects, goal_.elapsed_s);
-    const Similarity now = body.place();
+    const Similarity before = proxy.place();
+    proxy.carry(objects, goal_.elapsed_s);
+    const Similarity now = proxy.place();
     motion_.carried_m = now.translation_m - before.translation_m;
     motion_.carried_rad = rotation_between(before.rotation, now.rotation);
 }
 
 bool Tool::is_held() const noexcept
 {
-    const auto* const rigid = std::get_if<RigidProxy>(&state_);
+    const auto* const rigid = std::get_if<RigidProxy>(&proxy_);
     return rigid != nullptr ? rigid->is_joined() : !spec_.query_only;
 }
 
-/// Updates the placement. The reach covers the body's possible way to the goal. Only the expected
+/// Updates the placement. The reach covers the proxy's possible way to the goal. Only the expected
 /// way counts for a mesh, as surface in reach costs a hundred times as much as for other tools.
-void Tool::stand(const auto& body) noexcept
+void Tool::stand(const auto& proxy) noexcept
 {
-    const double likely_m = is_mesh(spec_) ? likely_way_m(body) : kInfinity;
-    const double way_m = std::min({body.way_to_m(goal_), way_left_m_, likely_m});
-    placement_.place = body.place();
-    placement_.reach_m = body.radius_m() * (1.0 + kReachMargin) + way_m;
-    if constexpr (requires { body.feels_beyond_m(); })
+    const double likely_m = is_mesh(spec_) ? likely_way_m(proxy) : kInfinity;
+    const double way_m = std::min({proxy.way_to_m(goal_), way_left_m_, likely_m});
+    placement_.place = proxy.place();
+    placement_.reach_m = proxy.radius_m() * (1.0 + kReachMargin) + way_m;
+    if constexpr (requires { proxy.feels_beyond_m(); })
     {
-        placement_.reach_m += body.feels_beyond_m();
+        placement_.reach_m += proxy.feels_beyond_m();
     }
 }
 
@@ -208,7 +208,7 @@ Tool::Motion Tool::motion_of(std::span<const NearObject> objects) const noexcept
 void Tool::forget(const PlacedSurface& gone) noexcept
 {
     lost_object_ = lost_object_ || (output_.in_contact && gone.lower_m <= placement_.reach_m);
-    with(state_, [&gone](auto& body) { body.forget(gone.object); });
+    with(proxy_, [&gone](auto& proxy) { proxy.forget(gone.object); });
 }
 
 /// Tests the straight path of the core's bounding sphere in the object's frame.
@@ -238,7 +238,7 @@ double Tool::near_m() const noexcept
 
 bool Tool::try_go_on(double& clear_m) noexcept
 {
-    if (auto* const proxy = std::get_if<Proxy>(&state_); proxy != nullptr)
+    if (auto* const proxy = std::get_if<Proxy>(&proxy_); proxy != nullptr)
     {
         way_left_m_ -= proxy->went_m();
         if (!proxy->goes_on() || way_left_m_ <= 0.0)
@@ -250,27 +250,27 @@ bool Tool::try_go_on(double& clear_m) noexcept
         stand(*proxy);
         return true;
     }
-    auto* const body = std::get_if<RigidProxy>(&state_);
-    if (body == nullptr || !body->goes_on())
+    auto* const proxy = std::get_if<RigidProxy>(&proxy_);
+    if (proxy == nullptr || !proxy->goes_on())
     {
         return false;
     }
-    clear_m -= body->went_m();
-    body->go_on();
-    placement_.place = body->place();
+    clear_m -= proxy->went_m();
+    proxy->go_on();
+    placement_.place = proxy->place();
     return true;
 }
 
 ToolOutput Tool::step(std::span<const PlacedSurface> surfaces, double clear_m,
                       std::uint32_t& planes) noexcept
 {
-    if (auto* const proxy = std::get_if<Proxy>(&state_); proxy != nullptr)
+    if (auto* const proxy = std::get_if<Proxy>(&proxy_); proxy != nullptr)
     {
         const ToolOutput output = proxy->respond(goal_, surfaces, clear_m, planes);
         planes = proxy->planes_left();
         return output;
     }
-    return with(state_, [&](auto& body) { return body.respond(goal_, surfaces, clear_m); });
+    return with(proxy_, [&](auto& proxy) { return proxy.respond(goal_, surfaces, clear_m); });
 }
 
 ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
@@ -296,12 +296,12 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
 
 double Tool::radius_m() const noexcept
 {
-    return with(state_, [](const auto& body) { return body.radius_m(); });
+    return with(proxy_, [](const auto& proxy) { return proxy.radius_m(); });
 }
 
 std::span<const Vec3> Tool::path_m() const noexcept
 {
-    const auto* proxy = std::get_if<Proxy>(&state_);
+    const auto* proxy = std::get_if<Proxy>(&proxy_);
     return proxy != nullptr ? proxy->path_m() : std::span<const Vec3>{};
 }
 

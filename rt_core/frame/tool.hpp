@@ -114,7 +114,7 @@ public:
     [[nodiscard]] std::span<const Vec3> path_m() const noexcept;
 
 private:
-    using State = std::variant<Follower, Proxy, RigidProxy>;
+    using AnyProxy = std::variant<Follower, Proxy, RigidProxy>;
     /// Motion of objects, and of the tool with them, in this frame; the fields are those of
     /// ToolOutput.
     struct Motion
@@ -124,15 +124,15 @@ private:
         Vec3 carried_m{0.0, 0.0, 0.0};
         Vec3 carried_rad{0.0, 0.0, 0.0};
     };
-    /// Number of equal outputs, for equal inputs, after which `state_` no longer changes.
+    /// Number of equal outputs, for equal inputs, after which `proxy_` no longer changes.
     static constexpr std::uint32_t kSettledOutputs = 4;
 
-    [[nodiscard]] static State make_state(const ToolSpec& spec,
-                                          RigidProxy::Planes* planes) noexcept;
+    [[nodiscard]] static AnyProxy make_proxy(const ToolSpec& spec,
+                                             RigidProxy::Planes* planes) noexcept;
     template <typename Function>
-    static auto with(auto& body, const Function& function) noexcept;
-    void let_carry(auto& body, std::span<const NearObject> objects) noexcept;
-    void stand(const auto& body) noexcept;
+    static auto with(auto& any, const Function& function) noexcept;
+    void let_carry(auto& proxy, std::span<const NearObject> objects) noexcept;
+    void stand(const auto& proxy) noexcept;
     [[nodiscard]] FrameFault take(const ToolState& sample) noexcept;
     [[nodiscard]] bool is_jump(const NearObject& object) const noexcept;
     [[nodiscard]] Motion motion_of(std::span<const NearObject> objects) const noexcept;
@@ -146,7 +146,7 @@ private:
     Sphere sphere_; ///< Bounding sphere of the core, in the tool's frame.
     SampleWatch watch_;
     ProxyGoal goal_;
-    State state_;
+    AnyProxy proxy_;
     ToolPlacement placement_;
     /// Centre of the core at the beginning of this frame; between frames, of the last one.
     Vec3 began_m_{0.0, 0.0, 0.0};
