@@ -303,8 +303,17 @@ double MeshPair::touch_m(double radius_m, double reach_m) const noexcept
     return share < 1.0 ? radius_m + share * (reach_m - radius_m) : reach_m;
 }
 
+ErrorCode MeshPair::tool_tolerance(ErrorCode tolerance) const noexcept
+{
+    const double error_m = static_cast<double>(error_in_quanta(tolerance)) *
+                           static_cast<double>(object_model_->header.quantum_m());
+    const double quantum_m =
+        static_cast<double>(tool_model_->header.quantum_m()) * placements_[0].place.scale;
+    return largest_code_within(error_m / quantum_m);
+}
+
 void MeshPair::query(const RegionOfInterest& region_of_interest, double certified_m,
-                     double contact_m, std::uint32_t enough, ContactEnds* ends,
+                     double contact_m, std::uint32_t enough, ErrorCode tolerance, ContactEnds* ends,
                      DistanceAnswer& answer, ContactReport& contacts) noexcept
 {
     const MeshQuestion question{tool_model_->tree,
@@ -315,14 +324,17 @@ void MeshPair::query(const RegionOfInterest& region_of_interest, double certifie
                                 ends,
                                 certified_m,
                                 enough,
-                                front_};
+                                front_,
+                                tool_tolerance(tolerance),
+                                tolerance};
     query_meshes(question, queried_, memory_, answer, report_, contacts);
     if (answer.nearest_face.is_none())
     {
         answer.tool_point_m = region_of_interest.core().center();
     }
-    is_meeting_ = enough == 1 && report_.intersection == Intersection::proven &&
-                  !answer.nearest_face.is_none();
+    const bool do_meet = report_.intersection == Intersection::proven ||
+                         report_.intersection == Intersection::within_tolerance;
+    is_meeting_ = enough == 1 && do_meet && !answer.nearest_face.is_none();
     meeting_m_ = answer.nearest_point_m;
 }
 

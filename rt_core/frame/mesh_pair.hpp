@@ -70,11 +70,15 @@ public:
     /// Distance within which contacts are searched: the reach, or a part of it beyond the radius
     /// after a truncated query.
     [[nodiscard]] double touch_m(double radius_m, double reach_m) const noexcept TACTUS_NONBLOCKING;
+    /// Tolerance of the tool's model with the same error, in metres, as `tolerance` of the
+    /// object's.
+    [[nodiscard]] ErrorCode tool_tolerance(ErrorCode tolerance) const noexcept TACTUS_NONBLOCKING;
     /// Queries distance, meeting faces and contacts, in the object's frame. Contacts are within
     /// `contact_m`, none if negative. `enough` meeting pairs end the search. `ends` may be null;
-    /// `certified_m` is the result of certified_m().
+    /// `certified_m` is the result of certified_m(). Faces of the object with errors up to
+    /// `tolerance` count as the surface, and faces of the tool up to tool_tolerance().
     void query(const RegionOfInterest& region_of_interest, double certified_m, double contact_m,
-               std::uint32_t enough, ContactEnds* ends, DistanceAnswer& answer,
+               std::uint32_t enough, ErrorCode tolerance, ContactEnds* ends, DistanceAnswer& answer,
                ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 
     /// Records a lower bound on the distance; above 0 proves that no faces meet.

@@ -268,6 +268,7 @@ void Pair::ask(RefineRequests& requests) noexcept
         // state.
         return;
     }
+    fit_tolerance();
     if (mesh_ != nullptr)
     {
         ask_for_mesh();
@@ -275,7 +276,6 @@ void Pair::ask(RefineRequests& requests) noexcept
     }
     else
     {
-        fit_tolerance();
         ask_for_spheres();
     }
     request(parts_.model, of_object_, requests);
@@ -284,13 +284,16 @@ void Pair::ask(RefineRequests& requests) noexcept
 void Pair::fit_tolerance() noexcept
 {
     room_ = surface_room();
-    const bool is_served = of_object_.closure.late_for == FrameFault::none;
-    tolerance_.fit(tolerance_range(), room_, is_served);
+    const FrameFault late_for = of_object_.closure.late_for | of_tool_.closure.late_for;
+    tolerance_.fit(tolerance_range(), room_, late_for == FrameFault::none);
+    of_object_.tolerance = tolerance_.code();
+    of_tool_.tolerance =
+        tolerance_.code() != 0 && mesh_ != nullptr ? mesh_->tool_tolerance(tolerance_.code()) : 0;
 }
 
 bool Pair::needs_coarser_model() const noexcept
 {
-    return is_model_here_ && mesh_ == nullptr && parts_.model.model->is_whole() &&
+    return is_model_here_ && parts_.model.model->is_whole() &&
            tolerance_.code() > tolerance_range().least;
 }
 
@@ -303,38 +306,56 @@ SurfaceTolerance::Range Pair::tolerance_range() const noexcept
         const ErrorCode fixed = largest_code_within(rules.variant.tolerance_m * quanta_of_m);
         return {fixed, fixed};
     }
-    if (rules.force_tolerance_n == 0.0)
+    if (rules.force_tolerance_n == 0.0 || parts_.tool->spec().wants_pairs)
     {
-        return {};
+        return {}; // Only exact faces decide which faces meet.
     }
+    const double surfaces = mesh_ != nullptr ? 2.0 : 1.0; // The errors of both meshes add up.
     const double stiffness =
         std::min(parts_.tool->spec().stiffness_n_per_m, feel_.felt().stiffness_n_per_m);
     const double unfelt_m = rules.force_tolerance_n / stiffness / parts_.object->pose.scale;
     const double most_m = kMostTolerated * parts_.tool->radius_m() / parts_.object->pose.scale;
-    const ErrorCode most = largest_code_within(most_m * quanta_of_m);
-    const ErrorCode least = largest_code_within(std::min(kToleratedQuanta, unfelt_m * quanta_of_m));
+    const ErrorCode most = largest_code_within(most_m * quanta_of_m / surfaces);
+    const ErrorCode least =
+        largest_code_within(std::min(kToleratedQuanta, unfelt_m * quanta_of_m / surfaces));
     return {std::min(least, most), most};
 }
 
 /// Finds from the last frame whether capacity and time suffice for the surface.
 SurfaceTolerance::Room Pair::surface_room() const noexcept
 {
-    const LocalSurface& surface = surface_;
-    const FrameFault late_for = of_object_.closure.late_for;
-    if (surface.is_cut || has_fault(late_for, kSurfaceFull))
+    const FrameFault late_for = of_object_.closure.late_for | of_tool_.closure.late_for;
+    if (surface_.is_cut || has_fault(late_for, kSurfaceFull))
     {
         return SurfaceTolerance::Room::short_;
     }
-    if (has_fault(late_for, kSurfaceLate))
+    if (has_fault(late_for, kSurfaceLate) || (mesh_ != nullptr && !was_answered_))
     {
-        return SurfaceTolerance::Room::late;
+        const DistanceAnswer& answer = surface_.answer;
+        const bool is_unknown = mesh_ != nullptr && answer.kind == AnswerKind::bounded &&
+                                answer.lower_m <= region_of_interest_.reach_m();
+        return is_unknown ? SurfaceTolerance::Room::unknown : SurfaceTolerance::Room::late;
     }
+    return would_finer_fit() ? SurfaceTolerance::Room::enough : SurfaceTolerance::Room::fitting;
+}
+
+/// True if some surface is in reach, and a finer one would fit into memory and budgets.
+bool Pair::would_finer_fit() const noexcept
+{
+    constexpr double kGrowth = SurfaceTolerance::kFinerGrowth;
     const VertexForest& forest = parts_.model.model->forest;
-    const bool has_room =
-        surface.count > 0 && had_work_left_ &&
-        surface.count * SurfaceTolerance::kFinerGrowth < kMaxLocalTriangles &&
-        forest.active_in_pool() * SurfaceTolerance::kFinerGrowth < forest.capacity();
-    return has_room ? SurfaceTolerance::Room::enough : SurfaceTolerance::Room::fitting;
+    const bool has_surface =
+        mesh_ != nullptr ? region_of_interest_.has_known() &&
+                               region_of_interest_.known().lower_m <= region_of_interest_.reach_m()
+                         : surface_.count > 0;
+    return has_surface && had_work_left_ && surface_.count * kGrowth < kMaxLocalTriangles &&
+           forest.active_in_pool() * kGrowth < forest.capacity();
+}
+
+void Pair::note_work_left(const WorkBudget& budget) noexcept
+{
+    had_work_left_ = (SurfaceTolerance::kFinerGrowth - 1.0) * budget.used() <=
+                     static_cast<double>(budget.left());
 }
 
 /// Asks about the spheres of the region of interest. Certificates of unused spheres are dropped.
@@ -427,7 +448,7 @@ void Pair::ask(bool is_asked, const Model& model, const RefineQuestion& question
     {
         RefineQuestion asked = question;
         asked.counts_errors = variant.fixed_radius == 0.0;
-        asked.tolerance = mesh_ == nullptr ? tolerance_.code() : ErrorCode{0};
+        asked.tolerance = inquiry.tolerance;
         inquiry.questions.push_back(asked);
         return;
     }
@@ -612,8 +633,7 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
         gather_surface(parts_.model.model->tree, region_of_interest_.core(),
                        region_of_interest_.reach_m(), query_memory_, budget, surface, proof_share(),
                        enough_meeting(), tolerance_.felt());
-        had_work_left_ = (SurfaceTolerance::kFinerGrowth - 1.0) * work.budget.used() <=
-                         static_cast<double>(work.budget.left());
+        note_work_left(work.budget);
         work.nodes_visited += budget.nodes_visited;
         work.triangles_tested += budget.triangles_tested;
         faults |= budget.is_spent ? FrameFault::node_budget_spent : FrameFault::none;
@@ -693,8 +713,9 @@ void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
                                      : tool.wants_contacts ? kEnoughMeetingFaces
                                                            : 1;
         mesh_->query(region_of_interest_, is_proven ? mesh_->certified_m(refine_memories_[0]) : 0.0,
-                     contact_m, enough, touches != nullptr ? &touches->ends : nullptr, answer,
-                     contacts);
+                     contact_m, enough, tolerance_.felt(),
+                     touches != nullptr ? &touches->ends : nullptr, answer, contacts);
+        note_work_left(work.budget);
         narrow(answer);
         mesh_->note_lower(answer.lower_m);
         region_of_interest_.remember(answer);

@@ -228,6 +228,7 @@ private:
     {
         StaticVector<RefineQuestion, Capacity> questions;
         Closure closure;
+        ErrorCode tolerance{0}; ///< Largest error of faces that need not be split.
     };
 
     [[nodiscard]] std::uint32_t revision() const noexcept;
@@ -237,6 +238,8 @@ private:
     void fit_tolerance() noexcept;
     [[nodiscard]] SurfaceTolerance::Range tolerance_range() const noexcept;
     [[nodiscard]] SurfaceTolerance::Room surface_room() const noexcept;
+    [[nodiscard]] bool would_finer_fit() const noexcept;
+    void note_work_left(const WorkBudget& budget) noexcept;
     void ask_for_spheres() noexcept;
     void ask_for_distance() noexcept;
     [[nodiscard]] bool tells_distance() const noexcept

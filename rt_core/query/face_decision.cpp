@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 namespace tactus
 {
@@ -27,14 +26,14 @@ FaceDecision::FaceDecision(const MeshQuestion& question, MeshFindings& findings,
 {
 }
 
-void FaceDecision::add(const FacePair& pair, bool is_coarse, const PlacedBlock& tool,
+void FaceDecision::add(const FacePair& pair, bool is_open, const PlacedBlock& tool,
                        const BlockGeometry& block, const VertexRows& rows, float slack) noexcept
 {
-    FacePairQueue& queue = is_coarse ? coarse_queue_ : queue_;
+    FacePairQueue& queue = is_open ? open_queue_ : queue_;
     queue.add(pair, tool, block, rows, slack);
     if (queue.is_full())
     {
-        is_coarse ? bound_queued_coarse() : decide_queued();
+        is_open ? bound_queued_open() : decide_queued();
     }
 }
 
@@ -46,17 +45,17 @@ void FaceDecision::bound_by(const Triangle& tool, const Triangle& face) noexcept
     take_bound(0, memory_.faces);
 }
 
-void FaceDecision::bound_queued_coarse() noexcept
+void FaceDecision::bound_queued_open() noexcept
 {
-    const std::uint32_t count = coarse_queue_.size();
+    const std::uint32_t count = open_queue_.size();
     if (count == 0)
     {
         return;
     }
-    question_.object.kernels().pair_distances(coarse_queue_.rows(), count, distances_);
+    question_.object.kernels().pair_distances(open_queue_.rows(), count, distances_);
     for (std::uint32_t lane = 0; lane < count; ++lane)
     {
-        const FacePair& pair = coarse_queue_[lane];
+        const FacePair& pair = open_queue_[lane];
         const double gap_m = static_cast<double>(distances_.lower[lane]) * quantum_m_;
         const double lower_m = gap_m - (tool_error_m(pair) + object_error_m(pair)) * kRoundedUp;
         if (lower_m > findings_.worth_m() ||
@@ -72,14 +71,14 @@ void FaceDecision::bound_queued_coarse() noexcept
         }
         else if (findings_.open_m() > 0.0)
         {
-            leave_coarse(tool, face);
+            leave_open(tool, face);
         }
         if (gap_m < findings_.bound_m())
         {
-            bound_by_corners(tool, face);
+            findings_.take_upper(corners_apart(tool.triangle, face.triangle));
         }
     }
-    coarse_queue_.clear();
+    open_queue_.clear();
 }
 
 void FaceDecision::decide_queued() noexcept
@@ -99,7 +98,7 @@ void FaceDecision::decide_queued() noexcept
         if ((sides.meet >> lane & 1U) != 0 || do_meet(pair))
         {
             memory_.faces = pair;
-            findings_.add_meeting(meeting_of(pair));
+            add_meeting(pair);
         }
         else
         {
@@ -132,7 +131,21 @@ void FaceDecision::measure_candidates() noexcept
         std::ranges::pop_heap(candidates_, is_farther);
         measure(candidates_.pop_back().pair);
     }
+    for (const Candidate& candidate : candidates_)
+    {
+        leave(candidate);
+    }
     candidates_.clear();
+}
+
+void FaceDecision::add_meeting(const FacePair& pair) noexcept
+{
+    const double error_m = tolerated_m(pair);
+    if (error_m > 0.0)
+    {
+        findings_.take_upper(corners_apart(tool_triangle(pair), object_triangle(pair)));
+    }
+    findings_.add_meeting(meeting_of(pair), error_m);
 }
 
 bool FaceDecision::do_meet(const FacePair& pair) const noexcept
@@ -154,12 +167,12 @@ void FaceDecision::bound_distances(std::uint32_t apart, std::uint32_t count) noe
     for (; apart != 0; apart &= apart - 1)
     {
         const auto lane = static_cast<std::uint32_t>(std::countr_zero(apart));
-        const float gap = distances_.lower[lane];
-        if (static_cast<double>(gap) * quantum_m_ > findings_.measured_m())
+        const Candidate candidate{queue_[lane], distances_.lower[lane]};
+        if (gap_of(candidate) > findings_.measured_m())
         {
+            leave(candidate);
             continue;
         }
-        const Candidate candidate{queue_[lane], gap};
         take_bound(lane, candidate.pair);
         findings_.count_contact(distances_.upper[lane]);
         if (candidates_.full())
@@ -182,6 +195,10 @@ void FaceDecision::make_room() noexcept
     {
         const bool stays =
             gap_of(candidates_[i]) <= contact_m || std::ranges::find(farthest, i) != farthest.end();
+        if (!stays)
+        {
+            leave(candidates_[i]);
+        }
         candidates_[left] = candidates_[i];
         left += stays ? 1U : 0U;
     }
@@ -200,7 +217,7 @@ void FaceDecision::make_room() noexcept
 void FaceDecision::take_bound(std::uint32_t lane, const FacePair& pair) noexcept
 {
     const double upper_m = static_cast<double>(distances_.upper[lane]) * quantum_m_ * kRoundedUp;
-    if (!findings_.try_bound(upper_m))
+    if (!findings_.try_bound(upper_m, tolerated_m(pair) == 0.0))
     {
         return;
     }
@@ -220,9 +237,26 @@ double FaceDecision::gap_of(const Candidate& candidate) const noexcept
 
 void FaceDecision::measure(const FacePair& pair) noexcept
 {
+    const Triangle tool = tool_triangle(pair);
     const Triangle triangle = object_triangle(pair);
-    findings_.add_apart(meeting_of(pair).faces, triangle,
-                        shared_.closest_points(tool_triangle(pair), triangle));
+    const double error_m = tolerated_m(pair);
+    if (error_m > 0.0)
+    {
+        findings_.take_upper(corners_apart(tool, triangle));
+    }
+    findings_.add_apart(meeting_of(pair).faces, triangle, shared_.closest_points(tool, triangle),
+                        error_m);
+}
+
+/// Leaves a pair that is neither nearest nor a contact unmeasured. If it is coarse, its bound less
+/// its error still bounds the original surface.
+void FaceDecision::leave(const Candidate& candidate) noexcept
+{
+    const double error_m = tolerated_m(candidate.pair);
+    if (error_m > 0.0)
+    {
+        findings_.tolerate(gap_of(candidate), error_m);
+    }
 }
 
 /// Finds the candidate that may be the farthest end in each direction, of those that could only be
@@ -294,6 +328,21 @@ double FaceDecision::object_error_m(const FacePair& pair) const noexcept
     return static_cast<double>(error_in_quanta(error)) * quantum_m_;
 }
 
+/// Error of a pair of faces that count as the surface, rounded up; 0 if both are exact.
+double FaceDecision::tolerated_m(const FacePair& pair) const noexcept
+{
+    if (!question_.is_tolerant())
+    {
+        return 0.0;
+    }
+    const bool is_tool_coarse =
+        (question_.tool.side(pair.tool_block).coarse >> pair.tool_lane & 1U) != 0;
+    const bool is_coarse = (question_.object.side(pair.block).coarse >> pair.lane & 1U) != 0;
+    return ((is_tool_coarse ? tool_error_m(pair) : 0.0) +
+            (is_coarse ? object_error_m(pair) : 0.0)) *
+           kRoundedUp;
+}
+
 Triangle FaceDecision::tool_triangle(const FacePair& pair) const noexcept
 {
     return placed_triangle(
@@ -306,25 +355,10 @@ Triangle FaceDecision::object_triangle(const FacePair& pair) const noexcept
     return to_triangle(block_triangle(question_.object.block(pair.block), pair.lane));
 }
 
-void FaceDecision::leave_coarse(const MeshFace& tool_face, const MeshFace& face) noexcept
+void FaceDecision::leave_open(const MeshFace& tool_face, const MeshFace& face) noexcept
 {
     const ClosestPoints closest = closest_points(tool_face.triangle, face.triangle);
     findings_.leave(closest.distance - closest.distance_error - tool_face.error_m - face.error_m);
-}
-
-/// Bounds the distance by that of the faces' corners: those of coarse faces are original vertices,
-/// too.
-void FaceDecision::bound_by_corners(const MeshFace& tool_face, const MeshFace& face) noexcept
-{
-    double nearest_sq = kInfinity;
-    for (const Vec3& tool_corner : tool_face.triangle)
-    {
-        for (const Vec3& corner : face.triangle)
-        {
-            nearest_sq = std::min(nearest_sq, (tool_corner - corner).squaredNorm());
-        }
-    }
-    findings_.take_upper(std::sqrt(nearest_sq) * kRoundedUp);
 }
 
 } // namespace tactus

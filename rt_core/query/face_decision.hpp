@@ -24,16 +24,17 @@ public:
     FaceDecision(const MeshQuestion& question, MeshFindings& findings,
                  MeshMemory& memory) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds a pair of faces that may matter. The arguments are those of FacePairQueue::add().
-    void add(const FacePair& pair, bool is_coarse, const PlacedBlock& tool,
+    /// Adds a pair of faces that may matter; `is_open` if one of them is coarse and above the
+    /// tolerance. The other arguments are those of FacePairQueue::add().
+    void add(const FacePair& pair, bool is_open, const PlacedBlock& tool,
              const BlockGeometry& block, const VertexRows& rows,
              float slack) noexcept TACTUS_NONBLOCKING;
     /// Bounds the distance by the remembered faces, before all others; this leaves little to
     /// search.
     void bound_by(const Triangle& tool, const Triangle& face) noexcept TACTUS_NONBLOCKING;
-    /// Bounds the distances of queued pairs with a coarse face. Whether such a pair may meet is
+    /// Bounds the distances of queued pairs with an open face. Whether such a pair may meet is
     /// decided in double precision.
-    void bound_queued_coarse() noexcept TACTUS_NONBLOCKING;
+    void bound_queued_open() noexcept TACTUS_NONBLOCKING;
     /// Decides whether queued pairs meet: in single precision, and exactly if signs are in doubt.
     void decide_queued() noexcept TACTUS_NONBLOCKING;
     /// Measures, in double precision, the pairs that may be the nearest or contacts. The nearest
@@ -56,7 +57,7 @@ private:
         Triangle triangle;
         double error_m{0.0};
     };
-    /// Pair of exact faces, to be measured unless others turn out to be nearer.
+    /// Pair of faces that count as the surface, to be measured unless others turn out to be nearer.
     struct Candidate // NOLINT(cppcoreguidelines-pro-type-member-init): written whole.
     {
         FacePair pair;
@@ -65,6 +66,7 @@ private:
     static constexpr std::size_t kMaxCandidates = 192;
     using FarthestEnds = std::array<std::size_t, kContactDirections>;
 
+    void add_meeting(const FacePair& pair) noexcept;
     [[nodiscard]] bool do_meet(const FacePair& pair) const noexcept;
     [[nodiscard]] Meeting meeting_of(const FacePair& pair) const noexcept;
     void bound_distances(std::uint32_t apart, std::uint32_t count) noexcept;
@@ -72,22 +74,23 @@ private:
     void take_bound(std::uint32_t lane, const FacePair& pair) noexcept;
     [[nodiscard]] double gap_of(const Candidate& candidate) const noexcept;
     void measure(const FacePair& pair) noexcept;
+    void leave(const Candidate& candidate) noexcept;
     [[nodiscard]] FarthestEnds farthest_ends() const noexcept;
     void measure_ends() noexcept;
     [[nodiscard]] double tool_error_m(const FacePair& pair) const noexcept;
     [[nodiscard]] double object_error_m(const FacePair& pair) const noexcept;
+    [[nodiscard]] double tolerated_m(const FacePair& pair) const noexcept;
     [[nodiscard]] Triangle tool_triangle(const FacePair& pair) const noexcept;
     [[nodiscard]] Triangle object_triangle(const FacePair& pair) const noexcept;
-    void leave_coarse(const MeshFace& tool_face, const MeshFace& face) noexcept;
-    void bound_by_corners(const MeshFace& tool_face, const MeshFace& face) noexcept;
+    void leave_open(const MeshFace& tool_face, const MeshFace& face) noexcept;
 
     const MeshQuestion& question_;
     MeshFindings& findings_;
     MeshMemory& memory_;
     double tool_quantum_m_; ///< Quantum of the tool's model, in metres of the object's frame.
     double quantum_m_;
-    FacePairQueue queue_; ///< Pairs of exact faces.
-    FacePairQueue coarse_queue_;
+    FacePairQueue queue_; ///< Pairs of faces that count as the surface.
+    FacePairQueue open_queue_;
     PairDistances distances_; ///< Bounds on the distances of the queued pairs.
     StaticVector<Candidate, kMaxCandidates> candidates_;
     SharedFeatures shared_; ///< Nearest features shared by measured pairs.

@@ -8,6 +8,7 @@
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/surface_query.hpp"
 
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -27,6 +28,16 @@ Triangle triangle_of(const AbTree& tree, PrimId prim) noexcept
     return to_triangle(block_triangle(tree.block(leaf / kBlockFaces), leaf % kBlockFaces));
 }
 
+/// Largest error of two faces that count as the surface.
+double tolerance_m(const MeshQuestion& question) noexcept
+{
+    const auto error_m = [](ErrorCode code, const AbTree& tree)
+    { return static_cast<double>(error_in_quanta(code)) * static_cast<double>(tree.quantum_m()); };
+    return (question.place.place.scale * error_m(question.tool_tolerance, question.tool) +
+            error_m(question.tolerance, question.object)) *
+           kRoundedUp;
+}
+
 /// True if any face of a tree is not exact.
 bool has_coarse(const AbTree& tree) noexcept
 {
@@ -42,6 +53,19 @@ bool comes_before(const MeetingFaces& a, const MeetingFaces& b) noexcept
     return std::tie(a.face, a.tool_face) < std::tie(b.face, b.tool_face);
 }
 
+double corners_apart(const Triangle& a, const Triangle& b) noexcept
+{
+    double nearest_sq = kInfinity;
+    for (const Vec3& corner : a)
+    {
+        for (const Vec3& other : b)
+        {
+            nearest_sq = std::min(nearest_sq, (corner - other).squaredNorm());
+        }
+    }
+    return std::sqrt(nearest_sq) * kRoundedUp;
+}
+
 Triangle placed_triangle(const Triangle& there, const MeshPlacement& place) noexcept
 {
     return {place.local_to_world(there[0]), place.local_to_world(there[1]),
@@ -54,6 +78,7 @@ MeshFindings::MeshFindings(const MeshQuestion& question, Aim aim, std::uint32_t 
     , aim_(aim)
     , enough_(enough)
     , reach_m_(aim == Aim::nearest ? kInfinity : question.reach_m)
+    , looked_m_(question.is_tolerant() ? reach_m_ + tolerance_m(question) : reach_m_)
     , quantum_m_(static_cast<double>(question.object.quantum_m()))
     , doubt_m_(doubt_m)
     , report_(report)
@@ -65,13 +90,13 @@ MeshFindings::MeshFindings(const MeshQuestion& question, Aim aim, std::uint32_t 
     TACTUS_ASSERT(aim != Aim::all || contacts != nullptr);
 }
 
-void MeshFindings::leave_coarse() noexcept
+void MeshFindings::leave_open() noexcept
 {
     if (has_coarse_)
     {
         leave(question_.certified_m);
     }
-    leaves_coarse_ = true;
+    leaves_open_ = true;
 }
 
 bool MeshFindings::has_expected_contacts() const noexcept
@@ -97,7 +122,7 @@ double MeshFindings::worth_m() const noexcept
     switch (aim_)
     {
     case Aim::all:
-        return std::max(reach_m_, share_ * bound_m_);
+        return std::max(looked_m_, share_ * bound_m_);
     case Aim::nearest:
         return bound_m_ + doubt_m_;
     case Aim::meeting:
@@ -116,15 +141,15 @@ double MeshFindings::measured_m() const noexcept
     return std::min(worth_m(), std::max(asked_contact_m(), nearest_m));
 }
 
-bool MeshFindings::needs_coarse() const noexcept
+bool MeshFindings::needs_open() const noexcept
 {
-    return has_coarse_ && !leaves_coarse_ && !is_left_open() &&
+    return has_coarse_ && !leaves_open_ && !is_left_open() &&
            !(question_.certified_m > worth_m() * kRoundedUp);
 }
 
 double MeshFindings::walked_m() const noexcept
 {
-    return needs_coarse() ? worth_m() : std::max(measured_m(), 0.0);
+    return needs_open() ? worth_m() : std::max(measured_m(), 0.0);
 }
 
 double MeshFindings::contact_zone_m() const noexcept
@@ -141,11 +166,20 @@ void MeshFindings::take_upper(double upper_m) noexcept
 }
 
 void MeshFindings::add_apart(const MeetingFaces& faces, const Triangle& triangle,
-                             const ClosestPoints& closest) noexcept
+                             const ClosestPoints& closest, double error_m) noexcept
 {
-    exact_lower_m_ =
-        std::min(exact_lower_m_, std::max(0.0, closest.distance - closest.distance_error));
-    take_upper(closest.distance + closest.distance_error);
+    const double upper_m = closest.distance + closest.distance_error;
+    if (error_m > 0.0)
+    {
+        tolerate(closest.distance - closest.distance_error, error_m);
+        bound_m_ = std::min(bound_m_, upper_m);
+    }
+    else
+    {
+        exact_lower_m_ =
+            std::min(exact_lower_m_, std::max(0.0, closest.distance - closest.distance_error));
+        take_upper(upper_m);
+    }
     if (aim_ == Aim::all && !expects_crowd_ && closest.distance <= question_.contact_m)
     {
         keep_contact(faces, triangle, closest);
@@ -159,12 +193,20 @@ void MeshFindings::add_apart(const MeetingFaces& faces, const Triangle& triangle
     }
 }
 
-void MeshFindings::add_meeting(const Meeting& meeting) noexcept
+void MeshFindings::add_meeting(const Meeting& meeting, double error_m) noexcept
 {
-    exact_lower_m_ = 0.0;
-    take_upper(0.0);
     ++found_;
-    keep_lowest(meeting.faces);
+    if (error_m > 0.0)
+    {
+        tolerate(0.0, error_m);
+        bound_m_ = std::min(bound_m_, 0.0);
+    }
+    else
+    {
+        exact_lower_m_ = 0.0;
+        take_upper(0.0);
+        keep_lowest(meeting.faces);
+    }
     if (aim_ != Aim::meeting)
     {
         keep_touching(meeting);
@@ -194,16 +236,24 @@ DistanceAnswer MeshFindings::answer() noexcept
 {
     Findings found;
     found.exact_lower_m = exact_lower_m_;
-    found.upper_m = std::min(upper_m_, bound_m_);
+    found.tolerated_lower_m = tolerated_lower_m_;
+    found.upper_m = upper_m_;
     found.open_m = is_all_there() ? open_m_ : std::min(open_m_, 0.0);
     if (enough_ == 1 || is_enough())
     {
         // No face is nearer than one that meets, so `open_m` need not be below zero.
         found.open_m = std::max(found.open_m, 0.0);
     }
-    found.pruned_m = found.upper_m > reach_m_ ? worth_m() : kInfinity;
+    if (!knows_nearest())
+    {
+        // Pairs within the tolerance that were not measured are only a bound.
+        found.open_m = std::min(found.open_m, tolerated_lower_m_);
+        found.tolerated_lower_m = kInfinity;
+    }
+    found.pruned_m = bound_m_ > looked_m_ ? worth_m() : kInfinity;
     found.dropped_m = kInfinity;
     DistanceAnswer answer = answer_from(found, reach_m_);
+    answer.tolerated_m = tolerated_m_;
     if (is_nearest_proven(found))
     {
         if (!touching_.empty())
@@ -227,10 +277,11 @@ void MeshFindings::report_meeting() noexcept
         std::ranges::make_heap(report_.meeting);
     }
     std::ranges::sort_heap(report_.meeting);
-    const bool is_all_seen = is_all_there() && open_m_ > 0.0;
+    const bool is_all_seen = is_all_there() && open_m_ > 0.0 && tolerated_lower_m_ > 0.0;
     report_.is_truncated = report_.is_truncated || (is_enough() && enough_ > 1);
     report_.is_complete = is_all_seen && !report_.is_truncated && !is_enough();
     report_.intersection = !report_.meeting.empty() ? Intersection::proven
+                           : has_met()              ? Intersection::within_tolerance
                            : is_all_seen            ? Intersection::none
                                                     : Intersection::open;
 }
@@ -262,12 +313,18 @@ void MeshFindings::report_contacts(const DistanceAnswer& answer) noexcept
         (answer.certified_radius_m >= question_.contact_m || answer.lower_m > question_.contact_m);
 }
 
-/// True if a coarse face may meet the other surface and the two are in reach: further coarse faces
+/// True if an open face may meet the other surface and the two are in reach: further open faces
 /// change no result.
 bool MeshFindings::is_left_open() const noexcept
 {
     return open_m_ <= 0.0 && (aim_ == Aim::meeting || needs_only_meeting() ||
                               (aim_ == Aim::all && bound_m_ <= reach_m_));
+}
+
+/// True if the points of a nearest pair are known.
+bool MeshFindings::knows_nearest() const noexcept
+{
+    return has_nearest_ || !touching_.empty();
 }
 
 /// True if one meeting pair is enough and some pair may meet: contacts and distances change no

@@ -22,7 +22,7 @@ enum class Aim : std::uint8_t
     meeting, ///< The search finds meeting faces alone, which needs no measuring.
 };
 
-/// Two exact faces that share a point.
+/// Two faces that count as the surface and share a point.
 struct Meeting
 {
     MeetingFaces faces;
@@ -33,6 +33,11 @@ struct Meeting
 /// Order of contacts: by the object's face, then the tool's.
 [[nodiscard]] bool comes_before(const MeetingFaces& a,
                                 const MeetingFaces& b) noexcept TACTUS_NONBLOCKING;
+
+/// Upper bound on the distance of two faces' nearest corners. Corners of coarse faces are original
+/// vertices, too.
+[[nodiscard]] double corners_apart(const Triangle& a,
+                                   const Triangle& b) noexcept TACTUS_NONBLOCKING;
 
 [[nodiscard]] Triangle placed_triangle(const Triangle& there,
                                        const MeshPlacement& place) noexcept TACTUS_NONBLOCKING;
@@ -51,12 +56,12 @@ public:
     void expect_crowd() noexcept { expects_crowd_ = true; }
     /// Sets the share of the distance, above 0, that is to be proven if nothing is in reach.
     void prove(double share) noexcept { share_ = share; }
-    /// Leaves coarse faces out: they count as `certified_m` of the question away.
-    void leave_coarse() noexcept TACTUS_NONBLOCKING;
+    /// Leaves open faces out: they count as `certified_m` of the question away.
+    void leave_open() noexcept TACTUS_NONBLOCKING;
     /// True if no distance beyond the reach is to be proven.
     [[nodiscard]] bool asks_for_reach_only() const noexcept
     {
-        return aim_ == Aim::all && worth_m() <= reach_m_;
+        return aim_ == Aim::all && worth_m() <= looked_m_;
     }
     /// Limits the search for contacts to `within_m`: valid only if has_expected_contacts() in the
     /// end.
@@ -69,35 +74,46 @@ public:
     [[nodiscard]] bool exceeds_capacity() const noexcept TACTUS_NONBLOCKING;
     /// Distance beyond which faces change no result. Never grows.
     [[nodiscard]] double worth_m() const noexcept TACTUS_NONBLOCKING;
-    /// Distance beyond which exact pairs need no measuring; negative if no pair does.
+    /// Distance beyond which pairs that count as the surface need no measuring; negative if no pair
+    /// does.
     [[nodiscard]] double measured_m() const noexcept TACTUS_NONBLOCKING;
-    /// True if coarse faces may be near enough to matter. Once false it stays false, as worth_m()
+    /// True if open faces may be near enough to matter. Once false it stays false, as worth_m()
     /// never grows.
-    [[nodiscard]] bool needs_coarse() const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool needs_open() const noexcept TACTUS_NONBLOCKING;
     /// Distance beyond which no pair of faces is visited.
     [[nodiscard]] double walked_m() const noexcept TACTUS_NONBLOCKING;
     /// Distance beyond which pairs are neither nearest nor kept contacts, and could only be ends.
     [[nodiscard]] double contact_zone_m() const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_enough() const noexcept { return found_ >= enough_; }
     [[nodiscard]] bool has_met() const noexcept { return found_ > 0; }
-    /// Upper bound on the distance of the two surfaces, in single precision.
+    /// Upper bound on the distance of the two surfaces as they are active, in single precision.
     [[nodiscard]] double bound_m() const noexcept { return bound_m_; }
-    /// Lower bound on the distance of inexact and unvisited pairs.
+    /// Lower bound on the distance of open and unvisited pairs.
     [[nodiscard]] double open_m() const noexcept { return open_m_; }
 
-    /// Lowers bound_m() to `upper_m`. False if it was as low already.
-    [[nodiscard]] bool try_bound(double upper_m) noexcept
+    /// Lowers bound_m() to `upper_m`. False if it was as low already. `is_of_source` is true if the
+    /// original surfaces are as near, too.
+    [[nodiscard]] bool try_bound(double upper_m, bool is_of_source) noexcept
     {
         const bool is_nearer = upper_m < bound_m_;
         bound_m_ = is_nearer ? upper_m : bound_m_;
+        upper_m_ = is_of_source ? std::min(upper_m_, upper_m) : upper_m_;
         return is_nearer;
+    }
+    /// Records that a pair within the tolerance is at least `gap_m` apart; its error is subtracted.
+    void tolerate(double gap_m, double error_m) noexcept
+    {
+        tolerated_lower_m_ = std::min(tolerated_lower_m_, gap_m - error_m);
+        tolerated_m_ = std::max(tolerated_m_, error_m);
     }
     /// Records that an unvisited pair is at least `gap_m` away.
     void leave(double gap_m) noexcept { open_m_ = std::min(open_m_, gap_m); }
     void take_upper(double upper_m) noexcept TACTUS_NONBLOCKING;
+    /// Adds a measured pair, or one that meets. `error_m` is the error of its coarse faces; 0 if
+    /// both are exact.
     void add_apart(const MeetingFaces& faces, const Triangle& triangle,
-                   const ClosestPoints& closest) noexcept TACTUS_NONBLOCKING;
-    void add_meeting(const Meeting& meeting) noexcept TACTUS_NONBLOCKING;
+                   const ClosestPoints& closest, double error_m) noexcept TACTUS_NONBLOCKING;
+    void add_meeting(const Meeting& meeting, double error_m) noexcept TACTUS_NONBLOCKING;
     /// Counts a pair that is at most `upper` quanta apart as a contact. If contacts exceed the
     /// capacity, the search skips pairs farther than all of `nearest_contacts_`.
     void count_contact(float upper) noexcept TACTUS_NONBLOCKING;
@@ -111,6 +127,7 @@ public:
 
 private:
     [[nodiscard]] bool is_left_open() const noexcept;
+    [[nodiscard]] bool knows_nearest() const noexcept;
     [[nodiscard]] bool needs_only_meeting() const noexcept;
     [[nodiscard]] double kept_contact_m() const noexcept;
     [[nodiscard]] double asked_contact_m() const noexcept;
@@ -128,21 +145,26 @@ private:
     Aim aim_;
     std::uint32_t enough_;
     double reach_m_;
+    /// Reach plus the tolerance: the surface that a face stands for may be nearer by that.
+    double looked_m_;
     double quantum_m_;
     double doubt_m_;
     MeshReport& report_;
     ContactReport* contacts_;
-    bool has_coarse_;           ///< True if one of the trees has coarse faces.
-    bool leaves_coarse_{false}; ///< True if coarse faces are left out.
-    std::uint32_t found_{0};    ///< Number of pairs that meet.
+    bool has_coarse_;         ///< True if one of the trees has coarse faces.
+    bool leaves_open_{false}; ///< True if open faces are left out.
+    std::uint32_t found_{0};  ///< Number of pairs that meet.
     /// Upper bounds on the nearest contacts, in quanta; a heap, the farthest on top.
     StaticVector<float, kMaxContacts + 1> nearest_contacts_;
-    double bound_m_{kInfinity}; ///< Upper bound on the surfaces' distance, in single precision.
-    double open_m_{kInfinity};  ///< Bound on inexact and unvisited pairs, as for open_m().
+    double bound_m_{kInfinity};       ///< Bound as for bound_m().
+    double open_m_{kInfinity};        ///< Bound on open and unvisited pairs, as for open_m().
     double exact_lower_m_{kInfinity}; ///< Lower bound on the distance of exact pairs.
-    double upper_m_{kInfinity};       ///< Upper bound on the surfaces' distance.
+    /// Lower bound on the distance of the surface that pairs within the tolerance stand for.
+    double tolerated_lower_m_{kInfinity};
+    double tolerated_m_{0.0};   ///< Largest error of such pairs.
+    double upper_m_{kInfinity}; ///< Upper bound on the original surfaces' distance.
     StaticVector<Meeting, kMaxContacts> touching_;
-    ClosestPoints nearest_; ///< Nearest exact pair.
+    ClosestPoints nearest_; ///< Nearest measured pair.
     MeetingFaces nearest_faces_;
     bool has_nearest_{false};
     bool has_dropped_{false}; ///< True if a contact did not fit.

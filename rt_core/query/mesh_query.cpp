@@ -49,11 +49,22 @@ constexpr double kLittle = 0.25;
 /// nothing beyond the reach is requested.
 constexpr double kShareOfCoarse = kLittle * static_cast<double>(kProofShare);
 
-/// True if the lane of a block still is an exact face.
-bool is_exact_face(const AbTree& tree, std::uint32_t block, std::uint32_t lane) noexcept
+/// True if the lane of a block still is a face that counts as the surface.
+bool is_surface_face(const AbTree& tree, std::uint32_t block, std::uint32_t lane,
+                     ErrorCode tolerance) noexcept
 {
     return tree.is_block_in_use(block) && lane < kBlockFaces &&
-           (tree.block(block).faces & ~tree.side(block).coarse & 1U << lane) != 0;
+           (tree.block(block).faces & ~lanes_above(tree.side(block), tolerance) & 1U << lane) != 0;
+}
+
+/// Error of a face in metres of its model's frame; 0 if it is exact.
+double error_of(const AbTree& tree, std::uint32_t block, std::uint32_t lane) noexcept
+{
+    const BlockSide& side = tree.side(block);
+    return (side.coarse >> lane & 1U) != 0
+               ? static_cast<double>(error_in_quanta(side.errors[lane])) *
+                     static_cast<double>(tree.quantum_m())
+               : 0.0;
 }
 
 /// The two remembered faces at their present place, and whether they meet.
@@ -62,16 +73,17 @@ struct Witness
     Triangle tool;
     Triangle triangle;
     Meeting meeting;
+    double error_m{0.0}; ///< Error of the pair; 0 if both faces are exact.
     bool do_meet{false};
 };
 
-/// Returns the remembered faces; none if one of them is gone or no longer exact.
+/// Returns the remembered faces; none if one of them is gone or no longer counts as the surface.
 std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair& pair,
                                     WalkBudget& budget) noexcept
 {
-    if (!is_exact_face(question.tool, pair.tool_block, pair.tool_lane) ||
-        !is_exact_face(question.object, pair.block, pair.lane) || !budget.take_node() ||
-        !budget.take_triangles(1))
+    if (!is_surface_face(question.tool, pair.tool_block, pair.tool_lane, question.tool_tolerance) ||
+        !is_surface_face(question.object, pair.block, pair.lane, question.tolerance) ||
+        !budget.take_node() || !budget.take_triangles(1))
     {
         return std::nullopt;
     }
@@ -84,6 +96,10 @@ std::optional<Witness> find_witness(const MeshQuestion& question, const FacePair
     witness.meeting.prim = question.object.side(pair.block).prims[pair.lane];
     witness.meeting.faces = {question.tool.face_of(witness.meeting.tool_prim),
                              question.object.face_of(witness.meeting.prim)};
+    witness.error_m =
+        (question.place.place.scale * error_of(question.tool, pair.tool_block, pair.tool_lane) +
+         error_of(question.object, pair.block, pair.lane)) *
+        kRoundedUp;
     witness.do_meet = meet(witness.tool, witness.triangle);
     return witness;
 }
@@ -101,7 +117,7 @@ public:
         , memory_(memory)
         , quantum_m_(static_cast<double>(question.object.quantum_m()))
         , views_(question.tool, question.object, question.place)
-        , placed_(question.tool, question.object, question.place, views_)
+        , placed_(question.tool, question.object, question.place, views_, question.tool_tolerance)
         , findings_(question, aim, enough, kSpanError * 2.0 * views_.farthest() * quantum_m_,
                     report, contacts)
         , decision_(question, findings_, memory)
@@ -128,22 +144,23 @@ public:
         {
             static_cast<void>(
                 findings_.try_bound(object->upper_bound_m(sphere_round(question_.tool.box())) *
-                                    question_.place.place.scale * kRoundedUp));
+                                        question_.place.place.scale * kRoundedUp,
+                                    true));
         }
         if (is_near)
         {
             if (memory_.share < kShareOfCoarse && findings_.asks_for_reach_only())
             {
-                findings_.leave_coarse();
+                findings_.leave_open();
             }
             search_all();
-            if (findings_.needs_coarse())
+            if (findings_.needs_open())
             {
-                decision_.bound_queued_coarse();
+                decision_.bound_queued_open();
             }
             else
             {
-                findings_.leave_coarse();
+                findings_.leave_open();
             }
             decision_.decide_queued();
             decision_.measure_candidates();
@@ -156,7 +173,7 @@ public:
         if (!findings_.has_met() && witness && witness->do_meet)
         {
             // The budget was spent before these faces were tested.
-            findings_.add_meeting(witness->meeting);
+            findings_.add_meeting(witness->meeting, witness->error_m);
         }
     }
 
@@ -176,7 +193,7 @@ private:
     {
         if (witness.do_meet || aim_ == Aim::meeting)
         {
-            static_cast<void>(findings_.try_bound(0.0));
+            static_cast<void>(findings_.try_bound(0.0, witness.error_m == 0.0));
             return;
         }
         decision_.bound_by(witness.tool, witness.triangle);
@@ -203,13 +220,14 @@ private:
     void search_all() noexcept
     {
         budget_.spend(WorkCost::walk);
-        PairWalk walk(question_.tool, question_.object, views_, budget_, question_.front,
-                      question_.place, !findings_.needs_coarse());
+        PairWalk walk(question_.tool, question_.object, views_, budget_,
+                      {question_.place, question_.front, question_.tool_tolerance,
+                       question_.tolerance, !findings_.needs_open()});
         while (!findings_.is_enough() && !has_stopped_)
         {
             const PairWalk::Item* near =
                 walk.next_blocks({bound_quanta(findings_.walked_m()), decision_.find_way(),
-                                  !findings_.needs_coarse()});
+                                  !findings_.needs_open()});
             if (near == nullptr)
             {
                 break;
@@ -245,17 +263,17 @@ private:
         const Kernels& kernels = question_.object.kernels();
         const PlacedBlock& tool = placed_.get(pair.tool_block);
         const BlockSide& side = question_.object.side(pair.block);
-        const bool takes_coarse = findings_.needs_coarse();
-        std::uint32_t tool_lanes = takes_coarse ? tool.faces : tool.faces & ~tool.coarse;
+        const bool takes_open = findings_.needs_open();
+        const std::uint32_t open = lanes_above(side, question_.tolerance);
+        std::uint32_t tool_lanes = takes_open ? tool.faces : tool.faces & ~tool.open;
         if (!budget_.take_triangles(count_lanes(tool_lanes), WorkCost::block_row))
         {
             stop_at(item);
             return item.gap;
         }
         // The object's box includes its faces' errors, its block does not.
-        const float box_bound = bound_of(tool, side, takes_coarse);
-        const float bound =
-            takes_coarse ? (box_bound + largest_error_quanta(side)) * kSumRoundedUp : box_bound;
+        const float box_bound = bound_of(takes_open && (tool.open | open) != 0);
+        const float bound = widened_by_error(box_bound, side, takes_open);
         const auto with_error = [&tool, bound](std::uint32_t lanes)
         { return (bound + tool.largest_error(lanes)) * kSumRoundedUp; };
         const BlockGeometry& block = question_.object.block(pair.block);
@@ -277,7 +295,7 @@ private:
         VertexRows rows; // NOLINT(cppcoreguidelines-pro-type-member-init): the kernel fills it.
         const std::uint32_t lanes = kernels.near_block(
             block.coordinates.front().data(), corners, tool.box,
-            takes_coarse ? block.faces : block.faces & ~side.coarse, with_error(tool_lanes), rows);
+            takes_open ? block.faces : block.faces & ~open, with_error(tool_lanes), rows);
         if (lanes == 0)
         {
             return item.gap;
@@ -297,9 +315,8 @@ private:
                     stop_at(item);
                     break;
                 }
-                const bool is_coarse =
-                    ((tool.coarse >> pair.tool_lane | side.coarse >> pair.lane) & 1U) != 0;
-                decision_.add(pair, is_coarse, tool, block, rows, views_.slack());
+                const bool is_open = ((tool.open >> pair.tool_lane | open >> pair.lane) & 1U) != 0;
+                decision_.add(pair, is_open, tool, block, rows, views_.slack());
             }
         }
         return item.gap;
@@ -373,13 +390,24 @@ private:
         return {way[0] * share, way[1] * share, way[2] * share};
     }
 
-    /// Distance within which face pairs of two blocks matter, in quanta of the object, less errors.
-    [[nodiscard]] float bound_of(const PlacedBlock& tool, const BlockSide& side,
-                                 bool takes_coarse) const noexcept
+    /// The bound plus the largest error of a block's visited faces.
+    [[nodiscard]] float widened_by_error(float bound, const BlockSide& side,
+                                         bool takes_open) const noexcept
     {
-        const bool has_coarse = takes_coarse && (tool.coarse | side.coarse) != 0;
-        return bound_quanta(has_coarse ? findings_.worth_m()
-                                       : std::max(findings_.measured_m(), 0.0));
+        if (!takes_open && question_.tolerance == 0)
+        {
+            return bound;
+        }
+        const float largest = largest_error_quanta(side);
+        const float error =
+            takes_open ? largest : std::min(largest, error_in_quanta(question_.tolerance));
+        return (bound + error) * kSumRoundedUp;
+    }
+
+    /// Distance within which face pairs of two blocks matter, in quanta of the object, less errors.
+    [[nodiscard]] float bound_of(bool has_open) const noexcept
+    {
+        return bound_quanta(has_open ? findings_.worth_m() : std::max(findings_.measured_m(), 0.0));
     }
 
     const MeshQuestion& question_;
@@ -398,10 +426,12 @@ private:
 DistanceAnswer answer_of_meeting(const Witness& witness) noexcept
 {
     const ClosestPoints closest = closest_points(witness.tool, witness.triangle, true);
+    const bool is_exact = witness.error_m == 0.0;
     DistanceAnswer answer;
-    answer.kind = AnswerKind::exact;
+    answer.kind = is_exact ? AnswerKind::exact : AnswerKind::within_tolerance;
     answer.lower_m = 0.0;
-    answer.upper_m = 0.0;
+    answer.upper_m = is_exact ? 0.0 : corners_apart(witness.tool, witness.triangle);
+    answer.tolerated_m = witness.error_m;
     answer.tool_point_m = closest.on_shape;
     answer.nearest_face = witness.meeting.faces.face;
     answer.nearest_point_m = closest.on_triangle;
@@ -417,8 +447,12 @@ bool try_report(const std::optional<Witness>& witness, MeshReport& report) noexc
     {
         return false;
     }
-    report.meeting.push_back(witness->meeting.faces);
-    report.intersection = Intersection::proven;
+    const bool is_exact = witness->error_m == 0.0;
+    report.intersection = is_exact ? Intersection::proven : Intersection::within_tolerance;
+    if (is_exact)
+    {
+        report.meeting.push_back(witness->meeting.faces);
+    }
     return true;
 }
 
@@ -561,6 +595,7 @@ void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, Mesh
 {
     report.clear();
     const std::optional<Witness> witness = find_witness(question, memory.faces, object.budget());
+    TACTUS_ASSERT(!question.is_tolerant());
     if (try_answer(witness, answer, report))
     {
         return;
@@ -575,6 +610,7 @@ void find_nearest_faces(const MeshQuestion& question, OtherSurface& object, Mesh
 void find_meeting_faces(const MeshQuestion& question, std::uint32_t enough, WalkBudget& budget,
                         MeshMemory& memory, MeshReport& report) noexcept
 {
+    TACTUS_ASSERT(!question.is_tolerant());
     report.clear();
     if (enough == 1 && try_report(find_witness(question, memory.faces, budget), report))
     {

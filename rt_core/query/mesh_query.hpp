@@ -34,13 +34,19 @@ struct MeshQuestion
     /// Farthest contacts in each direction, also slightly beyond the kept ones; null: not
     /// requested.
     ContactEnds* ends{nullptr};
-    /// Lower bound on the distance of inexact faces from the other model's original surface, in the
-    /// object's frame; 0: unknown.
+    /// Lower bound on the distance of open faces (coarse and above the tolerance) from the other
+    /// model's original surface, in the object's frame; 0: unknown.
     double certified_m{0.0};
     /// Number of meeting pairs that ends the search; above 0.
     std::uint32_t enough{kAllMeetingFaces};
     /// Front that the last query of the same two models kept; null: the search begins at the roots.
     PairFront* front{nullptr};
+    /// Largest errors of the tool's and the object's faces that count as the surface; for
+    /// query_meshes() only, otherwise 0.
+    ErrorCode tool_tolerance{0};
+    ErrorCode tolerance{0};
+
+    [[nodiscard]] bool is_tolerant() const noexcept { return (tool_tolerance | tolerance) != 0; }
 };
 
 /// Memory of a pair of meshes between queries: the two faces that met or were nearest, and guesses.
@@ -67,10 +73,14 @@ struct MeshMemory
 ///
 /// L is the least distance of all pairs: less both errors for a pair with a coarse face, and less
 /// the kernel's error law for an exact pair. Intersection of faces is decided exactly. If all near
-/// pairs are exact, the same pairs are found in any state of the trees. Coarse faces are left out
-/// if the question's `certified_m` is beyond all distances that matter. If `enough` pairs meet, the
+/// pairs are exact, the same pairs are found in any state of the trees. Open faces are left out if
+/// the question's `certified_m` is beyond all distances that matter. If `enough` pairs meet, the
 /// search ends: L and U are 0, the report has those pairs and is not complete, and contacts are
 /// those found until then.
+///
+/// Pairs with a coarse face within the tolerance are measured like exact ones, may be contacts and
+/// count as meeting. Their errors are subtracted from L, U does not follow from them, and the
+/// report lists and counts exact pairs only.
 ///
 /// `object` is the object's surface as seen from the tool's model, with the budget of the search.
 /// Takes 30 us if 100 pairs meet and no contacts are requested, and 0.2 us if one pair is enough

@@ -20,11 +20,11 @@ constexpr TreeRef kLoose = TreeRef::to_block(0);
 } // namespace
 
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): distances are written before each look.
-NearFaces::NearFaces(const AbTree& own, OtherSurface& other) noexcept
+NearFaces::NearFaces(const AbTree& own, OtherSurface& other, ErrorCode tolerance) noexcept
     : own_(own)
     , other_(other)
     , views_(own, other.tree(), other.placement())
-    , placed_(own, other.tree(), other.placement(), views_)
+    , placed_(own, other.tree(), other.placement(), views_, tolerance)
     , quanta_per_m_(views_.scale() / static_cast<double>(other.tree().quantum_m()))
 {
 }
@@ -209,11 +209,11 @@ bool NearFaces::try_test(const PairWalk::Item& item, const PlacedBlock& own,
     return true;
 }
 
-/// Lanes of a block's coarse faces, except those known to be possibly meeting: for these no nearer
-/// face is sought.
+/// Lanes of a block's coarse faces, except those within the tolerance and those known to be
+/// possibly meeting: for the latter no nearer face is sought.
 std::uint32_t NearFaces::open_lanes(const PlacedBlock& own) noexcept
 {
-    std::uint32_t lanes = own.coarse;
+    std::uint32_t lanes = own.open;
     const Block* known = find_block(own.index);
     for (std::uint32_t left = known != nullptr ? known->lanes : 0; left != 0; left &= left - 1)
     {

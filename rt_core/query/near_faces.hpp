@@ -34,8 +34,9 @@ struct UnfinishedSearch
     double moved_m{0.0};   ///< Motion of the other surface since the search.
 };
 
-/// Search for a model's active coarse faces near another surface, with lower bounds on their
-/// distances, from which both errors are subtracted. Lengths are in the model's own frame.
+/// Search for a model's active coarse faces near another surface whose errors exceed a tolerance,
+/// with lower bounds on their distances, from which both errors are subtracted. Lengths are in the
+/// model's own frame.
 ///
 /// Pairs of boxes are walked as in a query, but only in parts of the model with a coarse face: near
 /// a refined surface there is little to test. Both trees must be refitted (AbTree::refit). Haptic
@@ -52,8 +53,10 @@ public:
         std::array<float, kBlockFaces> gaps{};
     };
 
-    /// `other` is the other surface as seen from the model; its budget bounds the work.
-    NearFaces(const AbTree& own, OtherSurface& other) noexcept TACTUS_NONBLOCKING;
+    /// `other` is the other surface as seen from the model; its budget bounds the work. Faces with
+    /// errors up to `tolerance` are not searched.
+    NearFaces(const AbTree& own, OtherSurface& other,
+              ErrorCode tolerance) noexcept TACTUS_NONBLOCKING;
 
     static constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
 

@@ -5,6 +5,7 @@
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/query/other_surface.hpp"
+#include "rt_core/spm/error_code.hpp"
 
 #include <array>
 #include <cstdint>
@@ -40,7 +41,11 @@ struct PairFront
 
     std::uint32_t count{0}; ///< Number of entries; 0: nothing is known.
     std::uint32_t pause{0};
-    bool exact_only{false}; ///< True if subtrees without an exact face were left out.
+    /// True if open faces (coarse and above the tolerance) were left out.
+    bool leaves_open{false};
+    /// Largest errors of the tool's and the object's faces that counted as the surface.
+    ErrorCode tool_tolerance{0};
+    ErrorCode tolerance{0};
     std::uint64_t tool_change{0};
     std::uint64_t object_change{0};
     MeshPlacement place;

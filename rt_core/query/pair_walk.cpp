@@ -120,10 +120,11 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
 }
 
 PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views,
-                   WalkBudget& budget, PairFront* front, const MeshPlacement& place,
-                   bool exact_only) noexcept
+                   WalkBudget& budget, const Surfaces& surfaces) noexcept
     : PairWalk(tool, object, views, budget, {tool.root(), tool.box()})
 {
+    is_tolerant_ = (surfaces.tool_tolerance | surfaces.tolerance) != 0;
+    PairFront* const front = surfaces.front;
     if (front == nullptr || stack_.empty())
     {
         return;
@@ -134,7 +135,7 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
         return;
     }
     front_ = front;
-    if (can_go_on(place, exact_only))
+    if (can_go_on(surfaces))
     {
         stack_.clear();
         read_ = PairFront::kRoom - front->count;
@@ -144,21 +145,26 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
     else
     {
         front->travel = 0.0;
-        front->exact_only = false;
+        front->leaves_open = false;
+        front->tool_tolerance = surfaces.tool_tolerance;
+        front->tolerance = surfaces.tolerance;
         front->tool_change = tool.last_change();
         front->object_change = object.last_change();
     }
-    front->place = place;
+    front->place = surfaces.place;
     front->count = 0; // The front is invalid until the walk has ended.
 }
 
 /// Adds the tool's travel since the last walk to the front. True if the front's entries are for the
 /// same trees and include everything requested.
-bool PairWalk::can_go_on(const MeshPlacement& place, bool exact_only) noexcept
+bool PairWalk::can_go_on(const Surfaces& surfaces) noexcept
 {
+    const MeshPlacement& place = surfaces.place;
     if (front_->count == 0 || front_->tool_change != tool_.last_change() ||
-        front_->object_change != object_.last_change() || (front_->exact_only && !exact_only) ||
-        front_->place.place.scale != place.place.scale)
+        front_->object_change != object_.last_change() ||
+        (front_->leaves_open && !surfaces.leaves_open) ||
+        front_->tool_tolerance != surfaces.tool_tolerance ||
+        front_->tolerance != surfaces.tolerance || front_->place.place.scale != place.place.scale)
     {
         return false;
     }
@@ -182,7 +188,7 @@ const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
 {
     if (front_ != nullptr)
     {
-        front_->exact_only = front_->exact_only || sought.exact_only;
+        front_->leaves_open = front_->leaves_open || sought.leaves_open;
         limit_ = round_up_to_float(static_cast<double>(sought.bound) + front_->travel);
     }
     for (bool has_more = true; has_more; has_more = go_on())
@@ -374,7 +380,7 @@ void PairWalk::open(const Item& item, const Sought& sought) noexcept
     const float* boxes = node.volumes.low.front().data();
     alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
     const std::uint32_t wanted = (opens_tool && coarse_only_ ? node.coarse : node.mask) &
-                                 (sought.exact_only ? node.exact : node.mask);
+                                 (sought.leaves_open && !is_tolerant_ ? node.exact : node.mask);
     std::uint32_t near = tree.kernels().box_gaps(boxes, other, wanted, sought.bound, gaps.data());
     if (sought.way != nullptr && near != 0)
     {

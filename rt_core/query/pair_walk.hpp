@@ -78,9 +78,9 @@ public:
         /// Further direction to measure along, from the object to the tool, not longer than 1;
         /// null: none.
         const Vec3f* way{nullptr};
-        /// True if subtrees without an exact face are left out, in both trees. Once true, it stays
+        /// True if open faces (coarse and above the tolerance) are left out. Once true, it stays
         /// true.
-        bool exact_only{false};
+        bool leaves_open{false};
         /// Block of the tool for which the search is over; its pairs are skipped.
         TreeRef settled{};
     };
@@ -88,11 +88,19 @@ public:
     /// Both trees must be refitted (AbTree::refit). `views` must not be beyond the kernels.
     PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views, WalkBudget& budget,
              const Start& start) noexcept TACTUS_NONBLOCKING;
-    /// Walk of the whole tool. `front` is that of the same two trees; null: none. `place` is the
-    /// placement that `views` was made with, `exact_only` the value for the first step.
+    /// Faces that a walk of the whole tool visits, and the memory of the last such walk.
+    struct Surfaces
+    {
+        const MeshPlacement& place; ///< Placement that the views were made with.
+        PairFront* front{nullptr};  ///< Front of the same two trees; null: none.
+        /// Largest errors of the tool's and the object's faces that count as the surface.
+        ErrorCode tool_tolerance{0};
+        ErrorCode tolerance{0};
+        bool leaves_open{false}; ///< Value of Sought::leaves_open for the first step.
+    };
+    /// Walk of the whole tool.
     PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& views, WalkBudget& budget,
-             PairFront* front, const MeshPlacement& place,
-             bool exact_only) noexcept TACTUS_NONBLOCKING;
+             const Surfaces& surfaces) noexcept TACTUS_NONBLOCKING;
 
     /// Returns the next pair of blocks, valid until the next call; null if there is none or the
     /// budget is spent.
@@ -131,8 +139,7 @@ private:
     static constexpr std::uint32_t kDepths = 2 * kTreeLevels + 2;
 
     [[nodiscard]] bool is_wanted(TreeRef tool) const noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] bool can_go_on(const MeshPlacement& place,
-                                 bool exact_only) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool can_go_on(const Surfaces& surfaces) noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool go_on() noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool skip_dropped() noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] Item item_of(const PairFront::Entry& entry) const noexcept TACTUS_NONBLOCKING;
@@ -147,6 +154,8 @@ private:
     const MeshViews& views_;
     WalkBudget& budget_;
     bool coarse_only_; ///< True if exact subtrees of the tool are left out.
+    /// True if a coarse face may count as the surface: subtrees without an exact face may matter.
+    bool is_tolerant_{false};
     Item current_;
     /// Recently placed boxes of the tool, each at its reference modulo kSeen.
     std::array<Seen, kSeen> seen_;

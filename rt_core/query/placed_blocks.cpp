@@ -34,8 +34,8 @@ float PlacedBlock::largest_error(std::uint32_t lanes) const noexcept
 }
 
 PlacedBlocks::PlacedBlocks(const AbTree& tool, const AbTree& object, const MeshPlacement& place,
-                           const MeshViews& views) noexcept
-    : tool_(tool), object_(object), place_(place), views_(views)
+                           const MeshViews& views, ErrorCode tolerance) noexcept
+    : tool_(tool), object_(object), place_(place), views_(views), tolerance_(tolerance)
 {
 }
 
@@ -79,6 +79,7 @@ void PlacedBlocks::put(std::uint32_t index, PlacedBlock& placed) const noexcept
     placed.index = index;
     const BlockSide& side = tool_.side(index);
     placed.coarse = side.coarse;
+    placed.open = lanes_above(side, tolerance_);
     const double quanta =
         static_cast<double>(tool_.quantum_m()) * views_.scale() / object_quantum_m();
     for (std::uint32_t lanes = side.coarse; lanes != 0; lanes &= lanes - 1)
@@ -97,6 +98,7 @@ void PlacedBlocks::put_loose(const BlockGeometry& faces, std::uint32_t coarse,
     put(faces, placed);
     placed.index = kNoNode;
     placed.coarse = coarse;
+    placed.open = coarse;
     const double quanta_per_m = views_.scale() / object_quantum_m();
     for (std::uint32_t lanes = coarse; lanes != 0; lanes &= lanes - 1)
     {

@@ -20,6 +20,7 @@ struct PlacedBlock // NOLINT(cppcoreguidelines-pro-type-member-init): written wh
     std::uint32_t vertices{0}; ///< Number of vertices of the block.
     std::uint32_t faces{0};    ///< Lanes of active faces, one bit each.
     std::uint32_t coarse{0};   ///< Lanes of active faces that are not exact, one bit each.
+    std::uint32_t open{0};     ///< Lanes of coarse faces with errors above the tolerance.
     KernelBox box;             ///< Box round the faces, without their errors.
     TriangleRows rows;         ///< Coordinates of the faces around the centre of the box.
     float off;                 ///< Error bound of the rows' coordinates, in quanta.
@@ -37,14 +38,15 @@ struct PlacedBlock // NOLINT(cppcoreguidelines-pro-type-member-init): written wh
 class PlacedBlocks
 {
 public:
+    /// `tolerance` is the largest error of the tool's faces that count as the surface.
     PlacedBlocks(const AbTree& tool, const AbTree& object, const MeshPlacement& place,
-                 const MeshViews& views) noexcept TACTUS_NONBLOCKING;
+                 const MeshViews& views, ErrorCode tolerance) noexcept TACTUS_NONBLOCKING;
 
     /// Returns a block in use, placed; valid until the next call. Takes about 60 ns if it was not
     /// placed yet.
     [[nodiscard]] const PlacedBlock& get(std::uint32_t index) noexcept TACTUS_NONBLOCKING;
-    /// Places loose faces, which are in no block of the tree. `coarse` selects the lanes in use.
-    /// Errors are in metres of the tool's frame.
+    /// Places loose faces, which are in no block of the tree. `coarse` selects the lanes in use;
+    /// all of them are above the tolerance. Errors are in metres of the tool's frame.
     void put_loose(const BlockGeometry& faces, std::uint32_t coarse,
                    const std::array<double, kBlockFaces>& errors_m) noexcept TACTUS_NONBLOCKING;
     /// Loose faces of the last put_loose().
@@ -70,6 +72,7 @@ private:
     const AbTree& object_;
     const MeshPlacement& place_;
     const MeshViews& views_;
+    ErrorCode tolerance_;
     std::uint32_t last_{0};                 ///< Index in blocks_ of the last block.
     std::array<PlacedBlock, kKept> blocks_; ///< Placed blocks, each at its index modulo kKept.
 };

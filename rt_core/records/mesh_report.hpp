@@ -29,6 +29,8 @@ enum class Intersection : std::uint8_t
     open,   ///< Unknown: faces that are not exact may meet.
     none,   ///< Proven: no faces meet.
     proven, ///< Proven: at least two faces meet.
+    /// Two faces that count as the surface meet, and one is coarse within the tolerance.
+    within_tolerance,
 };
 
 /// Results of a pair whose tool is a mesh.

@@ -72,6 +72,18 @@ void leave_at(std::span<const RefineQuestion> questions, double excess_m) noexce
     }
 }
 
+/// Lanes of coarse faces with errors above the tolerance, one bit each.
+std::uint32_t lanes_above(ErrorCode tolerance, std::uint32_t coarse, const auto& errors) noexcept
+{
+    std::uint32_t open = coarse;
+    for (std::uint32_t lanes = tolerance != 0 ? coarse : 0; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        open &= errors[lane] > tolerance ? ~0U : ~(1U << lane);
+    }
+    return open;
+}
+
 /// Distance to the triangle's box: a cheap lower bound on the distance to the triangle.
 double box_distance_sq(const Vec3& point, const Triangle& triangle) noexcept
 {
@@ -296,7 +308,7 @@ void Refiner::gather_near_sphere(const RefineQuestion& question, WalkBudget& bud
 
 bool Refiner::gather_near_surface(const RefineQuestion& question, std::uint32_t enough) noexcept
 {
-    NearFaces near(*tree_, *question.surface);
+    NearFaces near(*tree_, *question.surface, question.tolerance);
     near.find(target_of(question) - question.span_m, enough, question.unfinished);
     std::uint32_t faces = 0;
     leave(question, near.rest_m() + question.span_m);
@@ -309,12 +321,9 @@ bool Refiner::gather_near_surface(const RefineQuestion& question, std::uint32_t 
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
             const double bound =
                 static_cast<double>(error_in_quanta(side.errors[lane])) * quantum_m_;
-            if (side.errors[lane] > question.tolerance)
-            {
-                take(side.prims[lane],
-                     near.gap_m(block, lane) + not_counted(question, bound) + question.span_m,
-                     question);
-            }
+            take(side.prims[lane],
+                 near.gap_m(block, lane) + not_counted(question, bound) + question.span_m,
+                 question);
         }
     }
     return faces < enough;
@@ -557,6 +566,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
     {
         return;
     }
+    const std::uint32_t all = coarse.lanes;
     StarBounds excess{};
     excess.fill(kInfinity);
     const Vec3 vertex = to_vec3(record.position_m);
@@ -583,16 +593,17 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             return;
         }
         stars_left_ -= question.surface != nullptr && is_own ? 1U : 0U;
+        coarse.lanes = lanes_above(question.tolerance, all, record.error);
+        if (coarse.lanes == 0)
+        {
+            return;
+        }
         StarBounds lower; // NOLINT(cppcoreguidelines-pro-type-member-init): it is filled.
         question.surface != nullptr ? bound_star_near_surface(question, coarse, lower)
                                     : bound_star_near_sphere(question, coarse, lower);
         for (std::uint32_t lanes = coarse.lanes; lanes != 0; lanes &= lanes - 1)
         {
             const auto place = static_cast<std::size_t>(std::countr_zero(lanes));
-            if (record.error[place] <= question.tolerance)
-            {
-                continue;
-            }
             if (is_own && lower[place] <= target_of(question))
             {
                 excess[place] = std::min(excess[place], excess_of(question, lower[place]));
@@ -632,7 +643,7 @@ void Refiner::bound_star_near_surface(const RefineQuestion& question, const Loos
                                       StarBounds& lower_m) const noexcept
 {
     const double farthest = std::max(target_of(question), question.memory->certified_m);
-    NearFaces near(*tree_, *question.surface);
+    NearFaces near(*tree_, *question.surface, question.tolerance);
     near.find(coarse, farthest - question.span_m);
     leave(question, near.rest_m() + question.span_m);
     lower_m.fill(kInfinity);

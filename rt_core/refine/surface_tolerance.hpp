@@ -32,6 +32,7 @@ public:
         enough,  ///< A finer surface would fit, too.
         fitting, ///< The surface fits, or none is in reach.
         late,    ///< Splits are still missing.
+        unknown, ///< Splits are still missing, and a mesh tool does not know the surface in reach.
         short_,  ///< Part of the surface did not fit.
     };
 
@@ -41,8 +42,8 @@ public:
     {
         TACTUS_ASSERT(range.least <= range.most);
         felt_ = is_served ? code_ : felt_;
-        const bool is_wanting = room == Room::short_ || room == Room::late;
-        wanting_ = is_wanting ? wanting_ + (room == Room::short_ ? kShortWeight : 1) : 0;
+        const bool is_wanting = room != Room::enough && room != Room::fitting;
+        wanting_ = is_wanting ? wanting_ + (room == Room::late ? 1 : kShortWeight) : 0;
         calm_frames_ = room == Room::enough ? calm_frames_ + 1 : 0;
         std::uint32_t code = code_;
         if (wanting_ >= kPatience)
@@ -77,8 +78,8 @@ private:
     }
 
     /// Room::late frames after which the tolerance doubles; a front that only lags has caught up by
-    /// then. A Room::short_ frame counts kShortWeight times: merges of the previous step are done
-    /// after six.
+    /// then. A Room::unknown or Room::short_ frame counts kShortWeight times: merges of the
+    /// previous step are done after six.
     static constexpr std::uint32_t kPatience = 24;
     static constexpr std::uint32_t kShortWeight = 4;
     static constexpr std::uint32_t kGrowth = 4;

@@ -65,18 +65,29 @@ double error_of(const ChangedFace& face)
     return static_cast<double>(error_in_quanta(face.error)) * static_cast<double>(kTreeQuantum);
 }
 
+/// Largest errors of faces that count as the surface.
+struct Tolerances
+{
+    ErrorCode tool{0};
+    ErrorCode object{0};
+};
+
 /// All pairs, one by one, with the kernels that their own tests check.
 struct AllPairs
 {
     double lower{kInfinity};
-    double upper{kInfinity};
-    double coarse_lower{kInfinity};
+    double upper{kInfinity};           ///< Least distance of exact faces.
+    double coarse_lower{kInfinity};    ///< Of pairs with a face above the tolerance, less errors.
+    double tolerated_lower{kInfinity}; ///< Of pairs with a coarse face within it, less errors.
+    double surface{kInfinity};         ///< Least distance of faces that count as the surface.
+    double corners{kInfinity};         ///< Least distance of two corners.
     std::set<MeetingFaces> meeting;
     std::set<MeetingFaces> in_contact;
     std::vector<std::tuple<double, FaceId, FaceId>> contacts; ///< Contacts in no order.
 
     AllPairs(std::span<const ChangedFace> tool, std::span<const ChangedFace> object,
-             const MeshPlacement& place, double contact)
+             const MeshPlacement& place, double contact, const Tolerances& tolerances = {})
+        : tolerances_(tolerances)
     {
         for (const ChangedFace& tool_face : tool)
         {
@@ -86,14 +97,18 @@ struct AllPairs
                 add(tool_face, first, face, place.place.scale, contact);
             }
         }
-        lower = std::max(0.0, std::min(lower, coarse_lower));
+        lower = std::max(0.0, std::min({lower, coarse_lower, tolerated_lower}));
     }
 
     [[nodiscard]] Intersection intersection() const
     {
-        return !meeting.empty()     ? Intersection::proven
-               : coarse_lower > 0.0 ? Intersection::none
-                                    : Intersection::open;
+        return !meeting.empty() ? Intersection::proven
+               : is_all_known() ? Intersection::none
+                                : Intersection::open;
+    }
+    [[nodiscard]] bool is_all_known() const
+    {
+        return std::min(coarse_lower, tolerated_lower) > 0.0;
     }
 
 private:
@@ -102,17 +117,35 @@ private:
     {
         const Triangle second = to_triangle(face.corners_m);
         const ClosestPoints closest = closest_points(first, second);
-        if (tool_face.error != 0 || face.error != 0)
+        for (const Vec3& corner : first)
         {
-            coarse_lower = std::min(coarse_lower, closest.distance - closest.distance_error -
-                                                      scale * error_of(tool_face) - error_of(face));
+            for (const Vec3& other : second)
+            {
+                corners = std::min(corners, (corner - other).norm());
+            }
+        }
+        const bool is_exact = tool_face.error == 0 && face.error == 0;
+        const bool is_surface =
+            tool_face.error <= tolerances_.tool && face.error <= tolerances_.object;
+        if (!is_exact)
+        {
+            double& least = is_surface ? tolerated_lower : coarse_lower;
+            least = std::min(least, closest.distance - closest.distance_error -
+                                        scale * error_of(tool_face) - error_of(face));
+        }
+        if (!is_surface)
+        {
             return;
         }
-        lower = std::min(lower, std::max(0.0, closest.distance - closest.distance_error));
-        upper = std::min(upper, closest.distance);
-        if (meet(first, second))
+        surface = std::min(surface, closest.distance);
+        if (is_exact)
         {
-            meeting.insert({tool_face.face, face.face});
+            lower = std::min(lower, std::max(0.0, closest.distance - closest.distance_error));
+            upper = std::min(upper, closest.distance);
+            if (meet(first, second))
+            {
+                meeting.insert({tool_face.face, face.face});
+            }
         }
         if (closest.distance <= contact)
         {
@@ -120,6 +153,8 @@ private:
             contacts.emplace_back(closest.distance, face.face, tool_face.face);
         }
     }
+
+    Tolerances tolerances_;
 };
 
 struct Asked
@@ -134,12 +169,13 @@ struct Asked
 Asked ask_for(std::uint32_t enough, const TreeRig& tool, const TreeRig& object,
               const MeshPlacement& place, double reach, double contact, MeshMemory& memory,
               const WalkBudget& budget = kAmple, double certified = 0.0,
-              ContactEnds* ends = nullptr)
+              ContactEnds* ends = nullptr, const Tolerances& tolerances = {})
 {
     Asked asked;
     OtherSurface surface(*object.sut, place, budget);
-    query_meshes({*tool.sut, *object.sut, place, reach, contact, ends, certified, enough}, surface,
-                 memory, asked.answer, asked.report, asked.contacts);
+    query_meshes({*tool.sut, *object.sut, place, reach, contact, ends, certified, enough, nullptr,
+                  tolerances.tool, tolerances.object},
+                 surface, memory, asked.answer, asked.report, asked.contacts);
     asked.budget = surface.budget();
     return asked;
 }
@@ -255,7 +291,7 @@ void expect_told(double told, double truth, double bound)
     ASSERT_TRUE(told == kInfinity || told >= truth - 0.01);
 }
 
-TEST(NearFaces, are_all_coarse_ones_within_the_bound_with_their_gaps)
+TEST(NearFaces, are_all_above_the_tolerance_and_within_the_bound_with_their_gaps)
 {
     Random random(84);
     int near_ones = 0;
@@ -268,15 +304,17 @@ TEST(NearFaces, are_all_coarse_ones_within_the_bound_with_their_gaps)
         {
             const MeshPlacement place = lifted_placement(random, 1.5);
             const double bound = random.between(0.0, 0.5);
+            const auto tolerance = static_cast<ErrorCode>(random.one_in(2) ? random.below(60) : 0);
             OtherSurface other(*object.sut, place, kAmple);
-            NearFaces sut(*tool.sut, other);
+            NearFaces sut(*tool.sut, other, tolerance);
             sut.find(bound);
             ASSERT_EQ(sut.rest_m(), kInfinity);
             for (const ChangedFace& own : tool.present())
             {
                 const std::uint32_t leaf = tool.sut->leaf_of(own.prim);
                 const double told = told_gap(sut, leaf / kBlockFaces, leaf % kBlockFaces);
-                const double truth = own.error == 0 ? kInfinity : gap_of(own, faces, place);
+                const double truth = own.error <= tolerance ? kInfinity : gap_of(own, faces, place);
+                ASSERT_TRUE(own.error > tolerance || told == kInfinity);
                 expect_told(told, truth, bound);
                 near_ones += truth <= bound ? 1 : 0;
                 far_ones += truth > bound ? 1 : 0;
@@ -293,7 +331,7 @@ TEST(NearFaces, are_all_coarse_ones_within_the_bound_with_their_gaps)
             {
                 continue;
             }
-            NearFaces of_star(*tool.sut, other);
+            NearFaces of_star(*tool.sut, other, 0);
             of_star.find(loose, bound);
             ASSERT_EQ(of_star.rest_m(), kInfinity);
             for (std::uint32_t lane = 0; lane < star.faces.size(); ++lane)
@@ -340,7 +378,7 @@ TEST(NearFaces, are_left_where_a_budget_ends_the_search_or_a_face_may_be_anywher
         const WalkBudget budget =
             is_one_block ? WalkBudget{10'000, share} : WalkBudget{share, 10 * share};
         OtherSurface other(*object.sut, place, budget);
-        NearFaces sut(*tool.sut, other);
+        NearFaces sut(*tool.sut, other, 0);
         const double bound = is_one_block ? 3.0 : 0.3;
         sut.find(bound);
         expect_nothing_missed(sut, tool, object, place, bound);
@@ -380,7 +418,7 @@ TEST(NearFaces, of_a_search_that_was_cut_are_left_to_those_that_go_on_with_it)
         {
             const WalkBudget budget{2 + random.below(12U), 200};
             OtherSurface other(*object.sut, place, budget);
-            NearFaces sut(*tool.sut, other);
+            NearFaces sut(*tool.sut, other, 0);
             sut.find(bound, NearFaces::kAll, &unfinished);
             expect_nothing_missed(sut, tool, object, place, bound);
             if (unfinished.left.empty())
@@ -416,7 +454,7 @@ TEST(NearFaces, are_left_where_there_are_more_blocks_of_them_than_kMaxNearBlocks
     fill(tool, random, kMany, false);
     fill(object, random, 4, true);
     OtherSurface other(*object.sut, MeshPlacement{}, kAmple);
-    NearFaces sut(*tool.sut, other);
+    NearFaces sut(*tool.sut, other, 0);
     sut.find(9.0);
     EXPECT_EQ(sut.blocks().size(), kMaxNearBlocks);
     EXPECT_LE(sut.rest_m(), 9.0);
@@ -433,10 +471,10 @@ TEST(NearFaces, are_no_longer_looked_for_once_enough_were_found)
         const MeshPlacement place = lifted_placement(random, 0.5);
         const double bound = random.between(0.0, 0.5);
         OtherSurface all_of_other(*object.sut, place, kAmple);
-        NearFaces all(*tool.sut, all_of_other);
+        NearFaces all(*tool.sut, all_of_other, 0);
         all.find(bound);
         OtherSurface other(*object.sut, place, kAmple);
-        NearFaces sut(*tool.sut, other);
+        NearFaces sut(*tool.sut, other, 0);
         const std::uint32_t enough = 1 + random.below(20);
         sut.find(bound, enough);
         std::uint32_t found = 0;
@@ -1263,6 +1301,127 @@ TEST(MeshQuery, looks_at_no_coarse_face_where_more_is_certified_than_it_asks_for
         spared += sut.budget.triangles_tested < free.budget.triangles_tested ? 1U : 0U;
     }
     EXPECT_GT(spared, 5U);
+}
+
+TEST(MeshQuery, with_a_tolerance_finds_what_measuring_all_pairs_finds)
+{
+    Random random(94);
+    int tolerated = 0;
+    int bounded = 0;
+    int touching = 0;
+    for (int round = 0; round < 240; ++round)
+    {
+        const auto [tool, object] = Meshes(random, round % 4 == 0, round % 4 == 1, false);
+        const std::uint32_t least = round % 3 == 0 ? 0 : 45; // Most faces are within the tolerance.
+        const auto code = [&] { return static_cast<ErrorCode>(least + random.below(61 - least)); };
+        const Tolerances tolerances{code(), code()};
+        MeshMemory memory;
+        for (int query = 0; query < 6; ++query)
+        {
+            const MeshPlacement place = lifted_placement(random, 1.2);
+            const double reach = random.between(0.0, 0.5);
+            const double contact = random.one_in(4) ? -1.0 : reach * random.between(0.0, 1.0);
+            const AllPairs truth(tool.present(), object.present(), place, contact, tolerances);
+            const double certified =
+                random.one_in(2) ? std::max(truth.coarse_lower, 0.0) * random.between(0.0, 1.0)
+                                 : 0.0;
+
+            const Asked asked = ask_for(kAllMeetingFaces, tool, object, place, reach, contact,
+                                        memory, kAmple, certified, nullptr, tolerances);
+
+            const DistanceAnswer& answer = asked.answer;
+            ASSERT_LE(answer.lower_m, truth.lower + 1e-14) << round << " " << query;
+            ASSERT_LE(answer.lower_m, answer.upper_m);
+            ASSERT_GE(answer.upper_m, truth.lower) << round << " " << query;
+            ASSERT_GE(answer.upper_m, std::min(truth.upper, truth.corners) - 1e-14);
+            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round << " " << query;
+            ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.is_all_known());
+            ASSERT_EQ(asked.report.intersection == Intersection::proven, !truth.meeting.empty());
+            if (answer.kind == AnswerKind::within_tolerance)
+            {
+                ++tolerated;
+                ASSERT_GT(answer.tolerated_m, 0.0);
+                ASSERT_FALSE(answer.nearest_face.is_none());
+                const double apart = (answer.nearest_point_m - answer.tool_point_m).norm();
+                ASSERT_NEAR(apart, truth.surface, 1e-13) << round << " " << query;
+                ASSERT_GE(answer.lower_m, truth.surface - answer.tolerated_m - 1e-13);
+            }
+            bounded += answer.kind == AnswerKind::bounded ? 1 : 0;
+            if (contact >= 0.0 && truth.in_contact.size() <= kMaxContacts)
+            {
+                std::set<MeetingFaces> found;
+                for (const Contact& contact_found : asked.contacts.contacts)
+                {
+                    found.insert({contact_found.tool_face, contact_found.face});
+                }
+                ASSERT_EQ(found, truth.in_contact) << round << " " << query;
+                ASSERT_TRUE(!asked.contacts.is_complete || truth.coarse_lower > contact);
+                touching += found.empty() ? 0 : 1;
+            }
+        }
+    }
+    EXPECT_GT(tolerated, 60);
+    EXPECT_GT(bounded, 50);
+    EXPECT_GT(touching, 60);
+}
+
+/// Copy of a rig whose faces are all exact.
+TreeRig exact_twin(const TreeRig& rig)
+{
+    TreeRig twin({300, 600, 600});
+    for (ChangedFace face : rig.present())
+    {
+        face.error = 0;
+        twin.put(face);
+    }
+    twin.sut->refit();
+    return twin;
+}
+
+TEST(MeshQuery, within_the_tolerance_measures_coarse_faces_like_exact_ones)
+{
+    constexpr Tolerances kAll{60, 60};
+    Random random(95);
+    int apart = 0;
+    int met = 0;
+    for (int round = 0; round < 300; ++round)
+    {
+        const auto [tool, object] = Meshes(random, false, false, false);
+        const TreeRig exact_tool = exact_twin(tool);
+        const TreeRig exact_object = exact_twin(object);
+        const MeshPlacement place = lifted_placement(random, 1.2);
+        const double reach = random.between(0.0, 0.4);
+        const std::uint32_t enough = random.one_in(2) ? 1 : kAllMeetingFaces;
+        MeshMemory memory;
+        MeshMemory twin_memory;
+        for (int again = 0; again < 2; ++again) // Once more with what was remembered.
+        {
+            const Asked sut = ask_for(enough, tool, object, place, reach, reach, memory, kAmple,
+                                      0.0, nullptr, kAll);
+            const Asked twin =
+                ask_for(enough, exact_tool, exact_object, place, reach, reach, twin_memory);
+            ASSERT_LE(sut.answer.lower_m, twin.answer.upper_m) << round;
+            if (twin.answer.kind != AnswerKind::exact)
+            {
+                continue;
+            }
+            ASSERT_LE(sut.answer.lower_m, twin.answer.lower_m) << round;
+            ASSERT_GE(sut.answer.upper_m, twin.answer.upper_m) << round;
+            const bool do_meet = !twin.report.meeting.empty();
+            met += do_meet ? 1 : 0;
+            apart += do_meet ? 0 : 1;
+            ASSERT_TRUE(is_known(sut.answer.kind)) << round;
+            ASSERT_GE(sut.answer.lower_m, twin.answer.lower_m - sut.answer.tolerated_m - 1e-13);
+            if (enough != 1 || !do_meet)
+            {
+                ASSERT_EQ(sut.answer.nearest_face, twin.answer.nearest_face) << round;
+                ASSERT_EQ(sut.answer.nearest_point_m, twin.answer.nearest_point_m) << round;
+                ASSERT_TRUE(same_contacts(sut.contacts, twin.contacts)) << round;
+            }
+        }
+    }
+    EXPECT_GT(met, 20);
+    EXPECT_GT(apart, 20);
 }
 
 TEST(MeshQuery, an_empty_tree_is_infinitely_far)
