@@ -174,7 +174,7 @@ void declare_force(CommandLine& line, Options& options)
     line.add_option("--force-tolerance", options.force_tolerance_n,
                     "Largest change of a force by coarser levels that count as the surface, in "
                     "newtons; larger where the pools have no room for finer levels. With 0, only "
-                    "exact faces count. Not for mesh tools")
+                    "exact faces count")
         .number_between(0.0, kForceToleranceMax_n)
         .show_default();
     line.add_option("--slew", options.slew_share_per_ms,

@@ -58,7 +58,7 @@ struct FrameSetup
     Prediction prediction{Prediction::automatic};
     /// Largest change of a force by coarse faces that count as the surface, of which the error is
     /// then at most a quarter of a quantum. The change is larger if pools or budgets don't suffice
-    /// (SurfaceTolerance). 0: exact faces only. Not for mesh tools.
+    /// (SurfaceTolerance). 0: exact faces only, as always for mesh tools that want meeting pairs.
     double force_tolerance_n{0.0};
     FrameVariant variant; ///< Switches for measurements; the default is the shipped frame.
     /// Kernels for the queries, which must outlive the frame; null: best_kernels().
