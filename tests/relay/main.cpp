@@ -92,7 +92,7 @@ bool say(const std::string& line)
     return std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0;
 }
 
-/// DDS configuration of a network by docs/protocol.md; without a double quote, so that it fits into
+/// DDS configuration of a network by docs/two-machines.md; without a double quote, so that it fits into
 /// JSON.
 std::string dds_configuration(const char* interface)
 {
