@@ -23,6 +23,8 @@ Commands:
             a scene of 200 objects, which two hands touch; with --view a browser shows it
   bench     build the benchmarks and run every suite; the results are written to build/bench as
             JSON and as text, BENCH-OPTIONS after -- go to tactus_bench, e.g. -- --core 1
+  docs      build these pages and the API reference as a site, in build/docs/html; a dead link or a
+            fault in a page fails it
   rt-machine  make the Debian packages and a Debian 12 with them and a PREEMPT_RT kernel, and run it
             in QEMU, its time counted in instructions: services, deadline tests, faults; figures
             and logs are written to build/rt_machine
@@ -40,7 +42,7 @@ Options:
   --arm64       rt-machine: with programs and a kernel for that processor, built by Debian's cross
                 compiler; in build/rt_machine_arm64
   --all         test: every test, long runs and builds by other compilers included (hours)
-  --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
+  --ci          packages: the packages of .ci/run (cmake/packages-ci.txt, packages-docs.txt) as well
   --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
   --scene       demo: a scene instead of one model
   --view        demo: serve a live view beside it, at the address that is printed
@@ -341,7 +343,7 @@ main() {
     local bench_options=() peers='' targets=(all) kept='' scene='' view='' architecture=''
     while (($# > 0)); do
         case "$1" in
-            build | programs | test | demo | bench | rt-machine | packages)
+            build | programs | test | demo | bench | docs | rt-machine | packages)
                 [[ -z "$command" ]] || fail 3 "two commands given: '$command' and '$1'"
                 command=$1
                 ;;
@@ -357,7 +359,8 @@ main() {
                 more_options+=(--tests-regex .)
                 targets+=(tests_left_out)
                 ;;
-            --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
+            --ci) lists+=("$root"/cmake/packages-{ci,docs}.txt) ;;
+            --bench) lists+=("$root/cmake/packages-bench.txt") ;;
             --seconds)
                 number_in "$1" "${2:-}" 1 3600
                 seconds=$2
@@ -403,7 +406,7 @@ main() {
  are about them"
     fi
     case "$command" in
-        '') fail 3 "no command given; use build, programs, test, demo, bench or --help" ;;
+        '') fail 3 "no command given; use build, programs, test, demo, bench, docs or --help" ;;
         packages) install_packages "${lists[@]}" ;;
         build)
             install_packages "${lists[@]}"
@@ -415,6 +418,10 @@ main() {
             [[ ! " ${more_options[*]} " =~ " -L "|bench|extended ]] || targets+=(tests_left_out)
             build_targets "${targets[@]}"
             run_tests "${more_options[@]}"
+            ;;
+        docs)
+            install_packages "$root/cmake/packages-docs.txt"
+            "$python" -B "$root/docs/site/build.py" "$root" "$root/build/docs" || exit $?
             ;;
         rt-machine)
             lists=("$root"/cmake/packages{,-rt}.txt)
