@@ -443,10 +443,171 @@ def named_tests(tree):
                 yield page, line, f"no suite of tests is called '{suite}'"
 
 
+# --- Pages ---------------------------------------------------------------------------------------
+
+BUDGETS = 'cmake/checks/page_words.txt'
+LONGEST_SENTENCE = 35
+
+
+class Budgets:
+    """Table of the pages: path or glob, largest number of words, `user` or `contributor`."""
+
+    def __init__(self, tree):
+        self.rows = []  # (line, glob, words, is for users)
+        text = tree.text(BUDGETS) if tree.exists(BUDGETS) else ''
+        for number, line in enumerate(text.split('\n'), 1):
+            row = line.split('#')[0].split()
+            if row and (len(row) != 3 or not row[1].isdigit()
+                        or row[2] not in ('user', 'contributor')):
+                raise Refusal(f'{BUDGETS}:{number}: not PAGE WORDS user|contributor')
+            if row:
+                self.rows.append((number, row[0], int(row[1]), row[2] == 'user'))
+
+    def row_of(self, page):
+        return next((row for row in self.rows if fnmatch.fnmatchcase(page, row[1])), None)
+
+    @staticmethod
+    def pages(tree):
+        return tree.files('README.md', 'docs/*.md')
+
+    def user_pages(self, tree):
+        return [page for page in self.pages(tree) if (row := self.row_of(page)) and row[3]]
+
+
+def words_in(text):
+    """Words of Markdown: a link is its text, code or a formula one word."""
+    text = re.sub(r'<!--.*?-->|!?\[([^\]]*)\]\([^()]*\)', r' \1 ', text, flags=re.S)
+    text = re.sub(r'`[^`]*`|\$[^$]+\$', 'code', text)
+    return re.findall(r'[^\s|]*\w[^\s|]*', text)
+
+
+def page_words(tree):
+    """A page has at most the words of cmake/checks/page_words.txt, code blocks left out."""
+    budgets = Budgets(tree)
+    used = set()
+    for page in budgets.pages(tree):
+        row = budgets.row_of(page)
+        if not row:
+            yield page, 1, f'has no line in {BUDGETS}'
+            continue
+        used.add(row[0])
+        count = len(words_in('\n'.join(text for _, text in tree.prose(page))))
+        if count > row[2]:
+            yield page, 1, f'{count} words; at most {row[2]} ({BUDGETS}:{row[0]})'
+    for row in budgets.rows:
+        if row[0] not in used:
+            yield BUDGETS, row[0], f"names '{row[1]}', which is not there"
+
+
+def paragraphs(tree, page):
+    """(line, text) of each paragraph, list item and table cell of a page."""
+    began, lines, is_formula = 0, [], False
+    for number, line in [*tree.prose(page), (0, '')]:
+        text = line.strip()
+        if text.count('$$') == 1:
+            is_formula = not is_formula
+            text = ''
+        if is_formula:
+            continue
+        if line.startswith('    ') and not lines:
+            continue  # Code.
+        is_new = not text or re.match(r'[#|]|[*+-] |\d+\. |<!--', text)
+        if is_new and lines:
+            yield began, ' '.join(lines)
+            lines = []
+        if text.startswith('|'):
+            yield from ((number, cell) for cell in re.split(r'(?<!\\)\|', text))
+        elif text and not text.startswith(('#', '<!--', '$$')):
+            began = began if lines else number
+            lines.append(re.sub(r'^([*+-]|\d+\.) +', '', text))
+
+
+def sentences(tree):
+    """A sentence of a page for users has at most 35 words."""
+    for page in Budgets(tree).user_pages(tree):
+        for line, paragraph in paragraphs(tree, page):
+            for sentence in re.split(r'(?<=[.!?])[)*]*\s+(?=[^a-z])', paragraph):
+                if (count := len(words_in(sentence))) > LONGEST_SENTENCE:
+                    begin = ' '.join(sentence.split()[:6])
+                    yield page, line, f"{count} words in '{begin} ...'; at most {LONGEST_SENTENCE}"
+
+
+def inside_of_users_pages(tree):
+    """A page for users names no test, and no file of the sources but cmake/setup.sh."""
+    kinds = '|'.join(sorted(TestNames(tree).kinds)) or '(?!)'
+    inside = (r'(?<![\w./<-])(?:rt_core|transport|platform|host_tools|tests|cmake)/'
+              r'(?!setup\.sh)[\w./*{]+'
+              rf'|`test_\w+`|`(?:{kinds})\.\w+`')
+    for page in Budgets(tree).user_pages(tree):
+        for line, text in tree.prose(page):
+            for name in re.findall(inside, text):
+                yield page, line, f"names '{name}', which no user of the package has"
+
+
+def tables(tree):
+    """Each row of a table has as many cells as its head, and no row is outside of a table."""
+    for page in tree.files('*.md'):
+        cells, last = 0, ''
+        for line, text in tree.prose(page):
+            row = re.sub(r'\\\|', '', text.strip())
+            count = row.count('|') - 1
+            if not row.startswith('|'):
+                cells = 0
+            elif re.fullmatch(r'\|( *:?-+:? *\|)+', row):
+                cells = count
+                if last.count('|') - 1 != cells:
+                    yield page, line, f'{cells} columns below a head of {last.count("|") - 1}'
+            elif cells and count != cells:
+                yield page, line, f'{count} cells in a table of {cells} columns'
+            elif not cells and last.startswith('|'):
+                yield page, line, 'a row outside of a table; is there a line of dashes above?'
+            last = row
+
+
+# Options of other programs that pages name.
+FOREIGN = {
+    'adduser': ('groups',), 'apt-get': ('no-install-recommends',),
+    'cmake': ('build', 'component', 'fresh', 'install', 'parallel', 'preset', 'prefix', 'target',
+              'toolchain', 'workflow'),
+    'docker': ('cap-add', 'ulimit'), 'gtest': ('gtest_filter',),
+    'pkg-config': ('cflags', 'libs', 'static'), 'systemctl': ('now',),
+    'udevadm': ('reload-rules',),
+}
+
+
+def options_named(tree):
+    """An option that a page names is one of our programs and scripts, or listed above. Decisions
+    tell of options that are gone."""
+    option = r'(?<![\w-])--([a-z][a-z0-9_-]*)'
+    sources = ('docs/man/*.1', 'cmake/setup.sh', 'cmake/checks/*.py', '.ci/run', 'tests/*.py',
+               'tests/*.sh', 'tests/bench/*.cpp', 'docs/site/*.py')
+    known = {name for names in FOREIGN.values() for name in names}
+    for path in tree.files(*sources):
+        known.update(re.findall(r'--([a-z][a-z0-9_-]*)', tree.text(path).replace('\\-', '-')))
+    pages = [page for page in Budgets.pages(tree) if '/decisions/' not in page]
+    for page, line, match in tree.matches(option, pages):
+        if match[1] not in known:
+            yield page, line, f"no option is called '--{match[1]}'"
+
+
+def glossary_sorted(tree):
+    """The words of the glossary are in order."""
+    page, before = 'docs/glossary.md', ''
+    for _, line, match in tree.matches(r'^\| ([^|]+?) \|', tree.files(page)):
+        word = match[1].strip('`*').casefold()
+        if word.startswith(('---', 'word', 'term')):
+            before = ''
+        elif word < before:
+            yield page, line, f"'{match[1]}' belongs above '{before}'"
+        else:
+            before = word
+
+
 GUARDS = {guard.__name__: guard for guard in (
     layers, modules_told, module_map, line_length, plain_comments, old_names, no_leftovers,
     machine_paths, licence,
-    files_listed, limits_tested, own_header_first, threads_told, links, named_tests)}
+    files_listed, limits_tested, own_header_first, threads_told, links, named_tests,
+    page_words, sentences, inside_of_users_pages, tables, options_named, glossary_sorted)}
 
 
 class Parser(argparse.ArgumentParser):
