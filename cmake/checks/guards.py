@@ -590,6 +590,32 @@ def options_named(tree):
             yield page, line, f"no option is called '--{match[1]}'"
 
 
+VERSIONS = {  # Row of docs/versions.md: source of its number.
+    'Release': ('CMakeLists.txt', r'project\(tactus VERSION (\S+)'),
+    'SPM format': ('rt_core/spm/header.hpp', r'kFormatVersion = (\d+)'),
+    'SPM coder': ('rt_core/spm/header.hpp', r'kCoderVersion = (\d+)'),
+    'DDS protocol': ('transport/dds/topics.hpp', r'kProtocolVersion = (\d+)'),
+    'Recording': ('platform/recording/recording_format.hpp', r'kRecordingVersion = (\d+)'),
+    'Report': ('platform/report/report.cpp', r'"schema", (\d+)'),
+    'UDP devices': ('platform/devices/udp/datagram.hpp', r'kVersion = (\d+)'),
+    'C API': ('host_tools/c/tactus.h', r'define TACTUS_ABI (\d+)'),
+    'Device plug-in': ('platform/devices/plugin/device_plugin.hpp', r'kPluginLayout\{(\d+)'),
+}
+
+
+def versions_told(tree):
+    """docs/versions.md has the versions of all formats and interfaces."""
+    page = 'docs/versions.md'
+    if not tree.exists(page):
+        return
+    rows = dict(re.findall(r'^\| \[?([\w -]*\w)[^|]*\| ([\d.]+) \|', tree.text(page), re.M))
+    for name, (source, pattern) in VERSIONS.items():
+        found = re.search(pattern, tree.text(source)) if tree.exists(source) else None
+        if not found or rows.get(name) != found[1]:
+            yield page, 1, f"{name} is {rows.get(name, 'missing')}; {source} has " + (
+                found[1] if found else 'none')
+
+
 def glossary_sorted(tree):
     """The words of the glossary are in order."""
     page, before = 'docs/glossary.md', ''
@@ -607,7 +633,8 @@ GUARDS = {guard.__name__: guard for guard in (
     layers, modules_told, module_map, line_length, plain_comments, old_names, no_leftovers,
     machine_paths, licence,
     files_listed, limits_tested, own_header_first, threads_told, links, named_tests,
-    page_words, sentences, inside_of_users_pages, tables, options_named, glossary_sorted)}
+    page_words, sentences, inside_of_users_pages, tables, options_named, versions_told,
+    glossary_sorted)}
 
 
 class Parser(argparse.ArgumentParser):

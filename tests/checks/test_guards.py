@@ -420,6 +420,17 @@ class Pages(House):
         self.text('docs/' 'internals/decisions/1.md', '`--gone`\n')
         self.refuse('options_named', "README.md:3: no option is called '--near'")
 
+    def test_a_version_that_the_sources_do_not_have_is_refused(self):
+        for source, _ in guards.VERSIONS.values():
+            self.text(source, (CHECKOUT / source).read_text())
+        page = (CHECKOUT / 'docs/versions.md').read_text()
+        self.text('docs/' 'versions.md', page)
+        self.accept('versions_told')
+        self.text('docs/' 'versions.md', re.sub(r'(SPM coder) \| \d+', r'\1 | 99', page))
+        (self.root / 'host_tools/c/tactus.h').unlink()
+        self.refuse('versions_told', 'docs/versions.md:1: SPM coder is 99; rt_core/spm/header.hpp',
+                    'docs/versions.md:1: C API is 3; host_tools/c/tactus.h has none')
+
     def test_a_word_of_the_glossary_out_of_order_is_refused(self):
         head = '| Word | Meaning |\n| --- | --- |\n'
         self.text('docs/' 'glossary.md', f'{head}| a, B | 1 |\n| *C* | 1 |\n\n{head}| b | 1 |\n')
