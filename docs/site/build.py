@@ -153,6 +153,13 @@ def run(*command):
     return subprocess.run(command, check=False).returncode
 
 
+def bundle_furo(static):
+    """Debian's furo.js imports another file, which browsers refuse in a script that is no module."""
+    scripts = static / 'scripts'
+    furo = re.sub(r'^import Gumshoe .*\n', '', read(scripts / 'furo.js'))
+    write(scripts / 'furo.js', read(scripts / 'gumshoe-patched.js') + furo)
+
+
 def add_mathjax(static):
     for part in MATHJAX_PARTS:
         target = static / 'mathjax' / part
@@ -182,11 +189,14 @@ def main(arguments):
     write(output / 'Doxyfile', DOXYFILE.format(output=output))
     if run('doxygen', str(output / 'Doxyfile')):
         return 1
-    if run('sphinx-build', '-q', '-W', '--keep-going', '-j', 'auto', '-c', str(SITE), '-D',
+    code = run('sphinx-build', '-q', '-W', '--keep-going', '-j', 'auto', '-c', str(SITE), '-D',
            f'breathe_projects.tactus={output}/xml', '-d', str(output / 'doctrees'),
-           str(output / 'source'), str(output / 'html')):
+           str(output / 'source'), str(output / 'html'))
+    if (static := output / 'html/_static').is_dir():
+        bundle_furo(static)
+        add_mathjax(static)
+    if code:
         return 1
-    add_mathjax(output / 'html/_static')
     print(f'Site: {output}/html/index.html')
     return 0
 

@@ -27,4 +27,9 @@ html_css_files = ['site.css']
 html_copy_source = False
 html_last_updated_fmt = None
 mathjax_path = 'mathjax/MathJax.js?config=TeX-AMS_CHTML'  # build.py puts Debian's there.
-mathjax2_config = {'showMathMenu': False, 'messageStyle': 'none'}
+mathjax2_config = {
+    'showMathMenu': False, 'messageStyle': 'none',
+    'tex2jax': {'inlineMath': [['\\(', '\\)']], 'displayMath': [['\\[', '\\]']],
+                'processClass': 'math'},
+}
+myst_update_mathjax = False  # It would configure version 3.

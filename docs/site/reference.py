@@ -59,7 +59,9 @@ def marked(mark, text):
     if not inner:
         return text
     lead, tail = text[:len(text) - len(text.lstrip())], text[len(text.rstrip()):]
-    escaped = re.sub(r'([*`|_])', r'\\\1', inner)
+    escaped = re.sub(r'([*`|_@])', r'\\\1', inner)
+    if not mark:
+        escaped = re.sub(r'(?<![\w-])--[a-z][a-z0-9-]*', r'``\g<0>``', escaped)
     # An escaped space ends a mark in the middle of a word.
     return f'{lead}{mark}{escaped}{mark}' + ('\\ ' if mark and not tail else '') + tail
 
@@ -75,17 +77,32 @@ def macro(name, rest):
     return ''.join(plain(f'\\f{name[at % 2]}{word}') for at, word in enumerate(words_of(rest)))
 
 
+BREAK = '.br'
+
+
+def with_breaks(paragraph):
+    """The paragraph; as a block of lines if it has breaks."""
+    if BREAK not in paragraph.split('\n'):
+        return paragraph
+    lines = paragraph.split(f'\n{BREAK}\n')
+    return '\n'.join('| ' + line.replace('\n', ' ').strip() for line in lines)
+
+
 def manual(path, text):
     """reStructuredText of a manual page in the few macros that ours use."""
-    out, indent, is_verbatim, wants_name = [], '', False, False
+    out, indent, is_verbatim, wants_name, program = [], '', False, False, ''
     for number, line in enumerate(text.splitlines(), 1):
         found = re.match(r'\.([A-Za-z]+) ?(.*)$', line)
         if line.startswith('.\\"') or (found and found[1] == 'TH'):
-            out += [f'.. program:: {words_of(found[2])[0].lower()}', ''] if found else []
+            program = words_of(found[2])[0].lower() if found else program
+            out += [f'.. program:: {program}', ''] if found else []
         elif found and found[1] in ('SH', 'SS'):
             indent = ''
             title = plain(found[2])
             title = title.capitalize() if found[1] == 'SH' else title
+            if title.lower().startswith(f'{program} '):
+                title = title.lower()
+                out += ['', f'.. program:: {title}', '']
             out += ['', *heading(title, '-' if found[1] == 'SH' else '~')]
         elif found and found[1] in ('TP', 'PP'):
             indent, wants_name = '', found[1] == 'TP'
@@ -94,14 +111,14 @@ def manual(path, text):
             is_verbatim = found[1] == 'nf'
             out += ['', '::', ''] if is_verbatim else ['']
         elif found and found[1] == 'br':
-            out[-1] = '| ' + out[-1] if not out[-1].startswith('| ') else out[-1]
-            out.append('| ')
+            out.append(BREAK)
         elif found and not re.fullmatch('[BIR]{1,2}', found[1]):
             raise Fault(path, number, f'macro .{found[1]} is not understood')
         else:
             body = macro(found[1], found[2]) if found else plain(line)
             if is_verbatim:
-                out.append('   ' + re.sub(r'\*\*|\\ |\\(?=[*`|_])', '', body))
+                text = ' '.join(words_of(found[2])) if found else line
+                out.append('   ' + re.sub(r'\\f[BIR]|\\&', '', text).replace('\\-', '-'))
             elif wants_name and re.match(r'\\f[BI](\\-|[A-Z])', line):
                 option = re.sub(r'\\f[BIR]|\*\*', '', line).replace('\\-', '-')
                 out += [f'.. option:: {option}', '']
@@ -109,11 +126,10 @@ def manual(path, text):
             elif wants_name:
                 out.append(body)
                 indent, wants_name = '   ', False
-            elif out[-1] == '| ':
-                out[-1] += body
             else:
                 out.append(indent + body)
-    return '\n'.join(line.removesuffix('\\ ') for line in out) + '\n'
+    paragraphs = map(with_breaks, '\n'.join(out).split('\n\n'))
+    return re.sub(r'\\ $', '', '\n\n'.join(paragraphs), flags=re.M) + '\n'
 
 
 # --- C and C++ -----------------------------------------------------------------------------------
@@ -210,6 +226,7 @@ def signature(function, is_method):
 def text_of(doc, indent):
     """A docstring at an indentation, its examples apart from its text."""
     doc = re.sub(r'(?<=\n)(?=>>>)|(?<!\n)\n(?=>>>)', '\n', doc, count=1)
+    doc = re.sub(r'(?<=[A-Z])@(?=[A-Z])', r'\\@', doc)
     return [indent + line if line else '' for line in doc.split('\n')] + [''] if doc else []
 
 
@@ -219,8 +236,7 @@ def python_page(stub, module):
     tree = ast.parse(stub)
     page = [*heading('Python API'), '.. py:module:: tactus', '', *text_of(docs['', ''], '')]
     constants = [node.target.id for node in tree.body if isinstance(node, ast.AnnAssign)]
-    for name in constants:
-        page += [f'.. py:data:: {name}', '']
+    page += ['.. py:data:: ' + '\n             '.join(constants), '']
     for node in (node for node in tree.body if isinstance(node, ast.ClassDef)):
         init = next((f for f in node.body if getattr(f, 'name', '') == '__init__'), None)
         page += [f'.. py:class:: {node.name}' + (signature(init, True) if init else ''), '',
