@@ -477,7 +477,7 @@ class Budgets:
 def words_in(text):
     """Words of Markdown: a link is its text, code or a formula one word."""
     text = re.sub(r'<!--.*?-->|!?\[([^\]]*)\]\([^()]*\)', r' \1 ', text, flags=re.S)
-    text = re.sub(r'`[^`]*`|\$[^$]+\$', 'code', text)
+    text = re.sub(r'`[^`]*`|\$\$.*?\$\$|\$[^$]+\$', 'code', text, flags=re.S)
     return re.findall(r'[^\s|]*\w[^\s|]*', text)
 
 
