@@ -168,6 +168,11 @@ def c_header(text):
     return '/** @addtogroup c\n@{ */' + text.split('\n', 1)[1] + '/** @} */\n'
 
 
+def with_pages(text):
+    """Text of a comment with the pages that it names as links."""
+    return re.sub(r'docs/([\w/-]+)\.md', r':doc:`/\1`', re.sub('`([^`]+)`', r'``\1``', text))
+
+
 def group_page(name, title, note):
     return '\n'.join([*heading(title), note, '', f'.. doxygengroup:: {name}', '   :content-only:',
                       '   :members:', ''])
@@ -178,16 +183,18 @@ def api_pages(root):
     headers = public_headers(root)
     names = [f'cpp_{name}' for name, _, _ in GROUPS]
     yield 'cpp', '\n'.join([
-        *heading('C++ API'), 'Public headers by subject. A header is included as',
-        '``<tactus/PATH>``. Headers below ``<tactus/detail/>`` are not for programs.', '',
+        *heading('C++ API'), 'Public headers by subject. Headers below ``<tactus/detail/>`` are not',
+        'for programs.', '',
         '.. toctree::', '   :maxdepth: 1', '', *(f'   {name}' for name in names), ''])
     for name, title, _ in GROUPS:
         own = [header for header in headers if group_of(header) == name]
-        note = '\n'.join(['Headers, each below ``<tactus/>``:', '',
-                          *(f'* ``{header}``' for header in own)])
+        note = '\n'.join(['.. code-block:: cpp', '',
+                          *(f'   #include <tactus/{header}>' for header in own)])
         yield f'cpp_{name}', group_page(name, title, note)
-    yield 'c', group_page('c', 'C API', '``#include <tactus/tactus.h>``, with the comments of that '
-                          'header.\nThe program that shows its use: :doc:`/library`.')
+    text = (root / C_HEADER).read_text(encoding='utf-8')
+    about = re.sub(r'^ ?\*', '', re.search(r'/\*(.*?)\*/', text, re.S)[1], flags=re.M)
+    yield 'c', group_page('c', 'C API', '.. code-block:: c\n\n   #include <tactus/tactus.h>\n\n'
+                          + '\n'.join(line.strip() for line in with_pages(about).split('\n')))
 
 
 # --- Python --------------------------------------------------------------------------------------
@@ -226,7 +233,7 @@ def signature(function, is_method):
 def text_of(doc, indent):
     """A docstring at an indentation, its examples apart from its text."""
     doc = re.sub(r'(?<=\n)(?=>>>)|(?<!\n)\n(?=>>>)', '\n', doc, count=1)
-    doc = re.sub(r'(?<=[A-Z])@(?=[A-Z])', r'\\@', doc)
+    doc = with_pages(re.sub(r'(?<=[A-Z])@(?=[A-Z])', r'\\@', doc))
     return [indent + line if line else '' for line in doc.split('\n')] + [''] if doc else []
 
 
