@@ -253,15 +253,20 @@ def line_length(tree):
 
 
 BACKWARDS = r'///<? *(Of|By|As|And|Likewise|Else|Than)\b'
-VAGUE = r'(?i)//.*\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
+VAGUE = r'(?i)\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
 
 
 def plain_comments(tree):
-    """A comment has a subject and can be read before the declaration."""
+    """A comment has a subject and can be read before the declaration. It names what it means, as
+    does a page for users."""
     for path, line, match in tree.matches(BACKWARDS, tree.files(*CPP)):
         yield path, line, f'the comment begins with {match[1]}: name its subject first'
-    for path, line, match in tree.matches(VAGUE, tree.files(*CPP)):
+    for path, line, match in tree.matches(VAGUE.replace(')', ')//.*', 1), tree.files(*CPP)):
         yield path, line, f'{match[1]} in a comment: name what is meant'
+    for page in Budgets(tree).user_pages(tree):
+        for line, text in tree.prose(page):
+            for word in re.findall(VAGUE, text):
+                yield page, line, f'{word}: name what is meant'
 
 
 def old_names(tree):

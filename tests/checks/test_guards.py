@@ -240,6 +240,10 @@ class Text(House):
                     'rt_core/base/good.hpp:5: Nobody in a comment')
         self.source('rt_core/base/good.hpp', 'int a; ///< Value of the last frame.', '// Often.')
         self.accept('plain_comments')
+        self.text('README.md', 'One.\nNobody waits, or seldom.\n```\nnobody\n```\n')
+        self.accept('plain_comments')
+        self.text(guards.BUDGETS, 'README.md 9 user\n')
+        self.refuse('plain_comments', 'README.md:2: Nobody: name', 'README.md:2: seldom: name')
 
     def test_names_that_were_renamed_are_refused(self):
         self.accept('old_names')
