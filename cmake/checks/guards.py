@@ -253,7 +253,7 @@ def line_length(tree):
 
 
 BACKWARDS = r'///<? *(Of|By|As|And|Likewise|Else|Than)\b'
-VAGUE = r'(?i)\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
+VAGUE = r'\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
 
 
 def plain_comments(tree):
@@ -261,11 +261,11 @@ def plain_comments(tree):
     does a page for users."""
     for path, line, match in tree.matches(BACKWARDS, tree.files(*CPP)):
         yield path, line, f'the comment begins with {match[1]}: name its subject first'
-    for path, line, match in tree.matches(VAGUE.replace(')', ')//.*', 1), tree.files(*CPP)):
+    for path, line, match in tree.matches('(?i)//.*' + VAGUE, tree.files(*CPP)):
         yield path, line, f'{match[1]} in a comment: name what is meant'
     for page in Budgets(tree).user_pages(tree):
         for line, text in tree.prose(page):
-            for word in re.findall(VAGUE, text):
+            for word in re.findall(VAGUE, text, re.IGNORECASE):
                 yield page, line, f'{word}: name what is meant'
 
 
