@@ -13,46 +13,48 @@ usage() {
 Usage: bash cmake/setup.sh COMMAND [OPTIONS] [-- CTEST-OPTIONS | -- BENCH-OPTIONS]
 
 Commands:
-  build     install the packages that are missing and build everything into build/release
-  programs  the same for the programs alone, in a fraction of the time
-  test      build, then run the tests that show whether Tactus works on this machine; what they
-            leave out is named at the end. CTEST-OPTIONS after -- go to ctest in their place, e.g.
+  build     install missing packages and build everything in build/release
+  programs  install missing packages and build the programs only, in a fraction of the time
+  test      build, then run the tests that show whether Tactus works on this machine; the last line
+            names the tests left out. CTEST-OPTIONS after -- replace the selection, for example
             -- -R integration or -- -L bench
-  demo      build the programs, make a model, publish it over DDS on this machine and touch it
-            for 10 s at 1 kHz; the report is written to build/demo/report.json. With --scene
-            a scene of 200 objects, which two hands touch; with --view a browser shows it
-  bench     build the benchmarks and run every suite; the results are written to build/bench as
-            JSON and as text, BENCH-OPTIONS after -- go to tactus_bench, e.g. -- --core 1
-  rt-machine  make the Debian packages and a Debian 12 with them and a PREEMPT_RT kernel, and run it
-            in QEMU, its time counted in instructions: services, deadline tests, faults; figures
-            and logs are written to build/rt_machine
-  packages  only install the packages that are missing
+  demo      build the programs, make a model, publish it over DDS on this machine and touch it for
+            10 s at 1 kHz; the report is build/demo/report.json. --scene: 200 objects and two
+            simulated operators; --view: a browser shows it
+  bench     build the benchmarks and run every suite; the results in build/bench are JSON and text.
+            BENCH-OPTIONS after -- are for tactus_bench, for example -- --core 1
+  docs      build the pages and the API reference as a site in build/docs/html; a dead link or
+            another fault of a page is an error
+  rt-machine  build the Debian packages and a Debian 12 with a PREEMPT_RT kernel, and run it in QEMU
+            with time counted in instructions: services, deadline tests, faults; figures and logs
+            are in build/rt_machine
+  packages  install missing packages only
 
 Options:
-  --quick       bench: fewer frames and repeats, some three minutes instead of an hour;
+  --quick       bench: fewer frames and repeats, about three minutes instead of an hour;
                 rt-machine: seconds instead of minutes of virtual time
-  --peers       bench: beside ours measure the libraries of cmake/packages-bench.txt, which are
-                installed if need be; some are under the GPL, none becomes part of Tactus. Without
-                --quick also count instructions, by valgrind
-  --docs        bench: with --peers; keep the results in docs/benchmarks, too, those of a quick run
-                not over those of a full one, and draw its pictures; needs TACTUS_MESHES.
-                rt-machine: keep its results there
-  --arm64       rt-machine: with programs and a kernel for that processor, built by Debian's cross
-                compiler; in build/rt_machine_arm64
+  --peers       bench: also measure the libraries of cmake/packages-bench.txt, and install them if
+                needed; some are under the GPL, none becomes part of Tactus. Without --quick, also
+                count instructions with valgrind
+  --docs        bench: like --peers, and store the results in docs/benchmarks and draw the pictures;
+                a quick run does not replace a full one; needs TACTUS_MESHES.
+                rt-machine: store the results there
+  --arm64       rt-machine: programs and a kernel for arm64, built by Debian's cross compiler, in
+                build/rt_machine_arm64
   --all         test: every test, long runs and builds by other compilers included (hours)
-  --ci          packages: the packages of .ci/run (cmake/packages-ci.txt) as well
-  --bench       packages: the peers of tactus_bench (cmake/packages-bench.txt) as well
+  --ci          packages: also those of .ci/run (cmake/packages-ci.txt, cmake/packages-docs.txt)
+  --bench       packages: also the peers of tactus_bench (cmake/packages-bench.txt)
   --scene       demo: a scene instead of one model
-  --view        demo: serve a live view beside it, at the address that is printed
-  --seconds N   demo: touch for N seconds, 1 to 3600 (default 10)
-  --domain N    demo: use DDS domain N, 0 to 232 (default: the programs' own)
-  --help        this text
+  --view        demo: serve a live view at the printed address
+  --seconds N   demo: duration in seconds, 1 to 3600 [default: 10]
+  --domain N    demo: DDS domain, 0 to 232 [default: that of the programs]
+  --help        print this text
 
-Environment: CXX names the compiler (default g++). ccache is used when it is there.
+Environment: CXX names the compiler [default: g++]. ccache is used if it is installed.
 TACTUS_BUILD_DIR names a finished build folder: the demo then uses its programs, installs and
-builds nothing, and writes into its folder demo; the other commands refuse it.
-Exit codes: 0 done, 1 a test failed, the demo or bench missed a criterion, or --docs had to leave
-results as they were or the page tells old ones, 2 failed at run time, 3 wrong usage.
+builds nothing, and writes into its folder demo; other commands refuse it.
+Exit codes: 0 done; 1 a test failed, the demo or bench missed a criterion, a page of docs is faulty,
+or --docs kept older results; 2 failed at run time; 3 wrong usage.
 TEXT
 }
 
@@ -298,8 +300,9 @@ run_bench() { # run_bench KEPT OPTION...: all suites, as tactus_bench takes opti
     if [[ -n "$kept" && -f "$results/bench.json" ]]; then
         "$python" "$root/tests/bench/results.py" store "$kept" "$results/bench.json" || code=$?
         "$python" "$root/tests/bench/plots.py" draw "$kept" || code=$?
-        echo "What docs/benchmarks.md still has to be told:"
-        "$python" "$root/tests/bench/results.py" check "$kept" "$kept.md" || code=$?
+        echo "Differences between the pages and these results:"
+        "$python" "$root/tests/bench/results.py" check "$kept" "$kept.md" \
+            "$root/docs/your-mesh.md" "$root/README.md" || code=$?
     fi
     return "$code"
 }
@@ -341,7 +344,7 @@ main() {
     local bench_options=() peers='' targets=(all) kept='' scene='' view='' architecture=''
     while (($# > 0)); do
         case "$1" in
-            build | programs | test | demo | bench | rt-machine | packages)
+            build | programs | test | demo | bench | docs | rt-machine | packages)
                 [[ -z "$command" ]] || fail 3 "two commands given: '$command' and '$1'"
                 command=$1
                 ;;
@@ -357,7 +360,8 @@ main() {
                 more_options+=(--tests-regex .)
                 targets+=(tests_left_out)
                 ;;
-            --ci | --bench) lists+=("$root/cmake/packages-${1#--}.txt") ;;
+            --ci) lists+=("$root"/cmake/packages-{ci,docs}.txt) ;;
+            --bench) lists+=("$root/cmake/packages-bench.txt") ;;
             --seconds)
                 number_in "$1" "${2:-}" 1 3600
                 seconds=$2
@@ -403,7 +407,7 @@ main() {
  are about them"
     fi
     case "$command" in
-        '') fail 3 "no command given; use build, programs, test, demo, bench or --help" ;;
+        '') fail 3 "no command given; use build, programs, test, demo, bench, docs or --help" ;;
         packages) install_packages "${lists[@]}" ;;
         build)
             install_packages "${lists[@]}"
@@ -415,6 +419,10 @@ main() {
             [[ ! " ${more_options[*]} " =~ " -L "|bench|extended ]] || targets+=(tests_left_out)
             build_targets "${targets[@]}"
             run_tests "${more_options[@]}"
+            ;;
+        docs)
+            install_packages "$root/cmake/packages-docs.txt"
+            "$python" -B "$root/docs/site/build.py" "$root" "$root/build/docs" || exit $?
             ;;
         rt-machine)
             lists=("$root"/cmake/packages{,-rt}.txt)

@@ -341,7 +341,7 @@ inline constexpr double kFrictionMax = 1e3;
 inline constexpr double kDampingMax_n_s_per_m = 1e9;
 /// Range of the length of a texture's bumps, and their largest height as a share of it. Steeper
 /// bumps would make a wall more than 1.2 times as stiff as specified, and could pull
-/// (docs/stability.md). Other materials are refused (ChangeRefusal::bad_material).
+/// (docs/coupling.md). Other materials are refused (ChangeRefusal::bad_material).
 inline constexpr double kTextureLengthMin_m = 1e-4;
 inline constexpr double kTextureLengthMax_m = 1.0;
 inline constexpr double kTextureSteepest = 0x1p-5;

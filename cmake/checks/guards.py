@@ -253,15 +253,20 @@ def line_length(tree):
 
 
 BACKWARDS = r'///<? *(Of|By|As|And|Likewise|Else|Than)\b'
-VAGUE = r'(?i)//.*\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
+VAGUE = r'\b(whoever|whatever|nobody|lately|anew|for ever|mend|foretell|seldom|askew)\b'
 
 
 def plain_comments(tree):
-    """A comment has a subject and can be read before the declaration."""
+    """A comment has a subject and can be read before the declaration. It names what it means, as
+    does a page for users."""
     for path, line, match in tree.matches(BACKWARDS, tree.files(*CPP)):
         yield path, line, f'the comment begins with {match[1]}: name its subject first'
-    for path, line, match in tree.matches(VAGUE, tree.files(*CPP)):
+    for path, line, match in tree.matches('(?i)//.*' + VAGUE, tree.files(*CPP)):
         yield path, line, f'{match[1]} in a comment: name what is meant'
+    for page in Budgets(tree).user_pages(tree):
+        for line, text in tree.prose(page):
+            for word in re.findall(VAGUE, text, re.IGNORECASE):
+                yield page, line, f'{word}: name what is meant'
 
 
 def old_names(tree):
@@ -443,10 +448,198 @@ def named_tests(tree):
                 yield page, line, f"no suite of tests is called '{suite}'"
 
 
+# --- Pages ---------------------------------------------------------------------------------------
+
+BUDGETS = 'cmake/checks/page_words.txt'
+LONGEST_SENTENCE = 35
+
+
+class Budgets:
+    """Table of the pages: path or glob, largest number of words, `user` or `contributor`."""
+
+    def __init__(self, tree):
+        self.rows = []  # (line, glob, words, is for users)
+        text = tree.text(BUDGETS) if tree.exists(BUDGETS) else ''
+        for number, line in enumerate(text.split('\n'), 1):
+            row = line.split('#')[0].split()
+            if row and (len(row) != 3 or not row[1].isdigit()
+                        or row[2] not in ('user', 'contributor')):
+                raise Refusal(f'{BUDGETS}:{number}: not PAGE WORDS user|contributor')
+            if row:
+                self.rows.append((number, row[0], int(row[1]), row[2] == 'user'))
+
+    def row_of(self, page):
+        return next((row for row in self.rows if fnmatch.fnmatchcase(page, row[1])), None)
+
+    @staticmethod
+    def pages(tree):
+        return tree.files('README.md', 'docs/*.md')
+
+    def user_pages(self, tree):
+        return [page for page in self.pages(tree) if (row := self.row_of(page)) and row[3]]
+
+
+def words_in(text):
+    """Words of Markdown: a link is its text, code or a formula one word."""
+    text = re.sub(r'<!--.*?-->|!?\[([^\]]*)\]\([^()]*\)', r' \1 ', text, flags=re.S)
+    text = re.sub(r'`[^`]*`|\$\$.*?\$\$|\$[^$]+\$', 'code', text, flags=re.S)
+    return re.findall(r'[^\s|]*\w[^\s|]*', text)
+
+
+def page_words(tree):
+    """A page has at most the words of cmake/checks/page_words.txt, code blocks left out."""
+    budgets = Budgets(tree)
+    used = set()
+    for page in budgets.pages(tree):
+        row = budgets.row_of(page)
+        if not row:
+            yield page, 1, f'has no line in {BUDGETS}'
+            continue
+        used.add(row[0])
+        count = len(words_in('\n'.join(text for _, text in tree.prose(page))))
+        if count > row[2]:
+            yield page, 1, f'{count} words; at most {row[2]} ({BUDGETS}:{row[0]})'
+    for row in budgets.rows:
+        if row[0] not in used:
+            yield BUDGETS, row[0], f"names '{row[1]}', which is not there"
+
+
+def paragraphs(tree, page):
+    """(line, text) of each paragraph, list item and table cell of a page."""
+    began, lines, is_formula = 0, [], False
+    for number, line in [*tree.prose(page), (0, '')]:
+        text = line.strip()
+        if text.count('$$') == 1:
+            is_formula = not is_formula
+            text = ''
+        if is_formula:
+            continue
+        if line.startswith('    ') and not lines:
+            continue  # Code.
+        is_new = not text or re.match(r'[#|]|[*+-] |\d+\. |<!--', text)
+        if is_new and lines:
+            yield began, ' '.join(lines)
+            lines = []
+        if text.startswith('|'):
+            yield from ((number, cell) for cell in re.split(r'(?<!\\)\|', text))
+        elif text and not text.startswith(('#', '<!--', '$$')):
+            began = began if lines else number
+            lines.append(re.sub(r'^([*+-]|\d+\.) +', '', text))
+
+
+def sentences(tree):
+    """A sentence of a page for users has at most 35 words."""
+    for page in Budgets(tree).user_pages(tree):
+        for line, paragraph in paragraphs(tree, page):
+            for sentence in re.split(r'(?<=[.!?])[)*]*\s+(?=[^a-z])', paragraph):
+                if (count := len(words_in(sentence))) > LONGEST_SENTENCE:
+                    begin = ' '.join(sentence.split()[:6])
+                    yield page, line, f"{count} words in '{begin} ...'; at most {LONGEST_SENTENCE}"
+
+
+def inside_of_users_pages(tree):
+    """A page for users names no test, and no file of the sources but cmake/setup.sh."""
+    kinds = '|'.join(sorted(TestNames(tree).kinds)) or '(?!)'
+    inside = (r'(?<![\w./<-])(?:rt_core|transport|platform|host_tools|tests|cmake)/'
+              r'(?!setup\.sh)[\w./*{]+'
+              rf'|`test_\w+`|`(?:{kinds})\.\w+`')
+    for page in Budgets(tree).user_pages(tree):
+        for line, text in tree.prose(page):
+            for name in re.findall(inside, text):
+                yield page, line, f"names '{name}', which no user of the package has"
+
+
+def tables(tree):
+    """Each row of a table has as many cells as its head, and no row is outside of a table."""
+    for page in tree.files('*.md'):
+        cells, last = 0, ''
+        for line, text in tree.prose(page):
+            row = re.sub(r'\\\|', '', text.strip())
+            count = row.count('|') - 1
+            if not row.startswith('|'):
+                cells = 0
+            elif re.fullmatch(r'\|( *:?-+:? *\|)+', row):
+                cells = count
+                if last.count('|') - 1 != cells:
+                    yield page, line, f'{cells} columns below a head of {last.count("|") - 1}'
+            elif cells and count != cells:
+                yield page, line, f'{count} cells in a table of {cells} columns'
+            elif not cells and last.startswith('|'):
+                yield page, line, 'a row outside of a table; is there a line of dashes above?'
+            last = row
+
+
+# Options of other programs that pages name.
+FOREIGN = {
+    'adduser': ('groups',), 'apt-get': ('no-install-recommends',),
+    'cmake': ('build', 'component', 'fresh', 'install', 'parallel', 'preset', 'prefix', 'target',
+              'toolchain', 'workflow'),
+    'docker': ('cap-add', 'ulimit'), 'gtest': ('gtest_filter',),
+    'pkg-config': ('cflags', 'libs', 'static'), 'systemctl': ('now',),
+    'udevadm': ('reload-rules',),
+}
+
+
+def options_named(tree):
+    """An option that a page names is one of our programs and scripts, or listed above. Decisions
+    tell of options that are gone."""
+    option = r'(?<![\w-])--([a-z][a-z0-9_-]*)'
+    sources = ('docs/man/*.1', 'cmake/setup.sh', 'cmake/checks/*.py', '.ci/run', 'tests/*.py',
+               'tests/*.sh', 'tests/bench/*.cpp', 'docs/site/*.py')
+    known = {name for names in FOREIGN.values() for name in names}
+    for path in tree.files(*sources):
+        known.update(re.findall(r'--([a-z][a-z0-9_-]*)', tree.text(path).replace('\\-', '-')))
+    pages = [page for page in Budgets.pages(tree) if '/decisions/' not in page]
+    for page, line, match in tree.matches(option, pages):
+        if match[1] not in known:
+            yield page, line, f"no option is called '--{match[1]}'"
+
+
+VERSIONS = {  # Row of docs/versions.md: source of its number.
+    'Release': ('CMakeLists.txt', r'project\(tactus VERSION (\S+)'),
+    'SPM format': ('rt_core/spm/header.hpp', r'kFormatVersion = (\d+)'),
+    'SPM coder': ('rt_core/spm/header.hpp', r'kCoderVersion = (\d+)'),
+    'DDS protocol': ('transport/dds/topics.hpp', r'kProtocolVersion = (\d+)'),
+    'Recording': ('platform/recording/recording_format.hpp', r'kRecordingVersion = (\d+)'),
+    'Report': ('platform/report/report.cpp', r'"schema", (\d+)'),
+    'UDP devices': ('platform/devices/udp/datagram.hpp', r'kVersion = (\d+)'),
+    'C API': ('host_tools/c/tactus.h', r'define TACTUS_ABI (\d+)'),
+    'Device plug-in': ('platform/devices/plugin/device_plugin.hpp', r'kPluginLayout\{(\d+)'),
+}
+
+
+def versions_told(tree):
+    """docs/versions.md has the versions of all formats and interfaces."""
+    page = 'docs/versions.md'
+    if not tree.exists(page):
+        return
+    rows = dict(re.findall(r'^\| \[?([\w -]*\w)[^|]*\| ([\d.]+) \|', tree.text(page), re.M))
+    for name, (source, pattern) in VERSIONS.items():
+        found = re.search(pattern, tree.text(source)) if tree.exists(source) else None
+        if not found or rows.get(name) != found[1]:
+            yield page, 1, f"{name} is {rows.get(name, 'missing')}; {source} has " + (
+                found[1] if found else 'none')
+
+
+def glossary_sorted(tree):
+    """The words of the glossary are in order."""
+    page, before = 'docs/glossary.md', ''
+    for _, line, match in tree.matches(r'^\| ([^|]+?) \|', tree.files(page)):
+        word = match[1].strip('`*').casefold()
+        if word.startswith(('---', 'word', 'term')):
+            before = ''
+        elif word < before:
+            yield page, line, f"'{match[1]}' belongs above '{before}'"
+        else:
+            before = word
+
+
 GUARDS = {guard.__name__: guard for guard in (
     layers, modules_told, module_map, line_length, plain_comments, old_names, no_leftovers,
     machine_paths, licence,
-    files_listed, limits_tested, own_header_first, threads_told, links, named_tests)}
+    files_listed, limits_tested, own_header_first, threads_told, links, named_tests,
+    page_words, sentences, inside_of_users_pages, tables, options_named, versions_told,
+    glossary_sorted)}
 
 
 class Parser(argparse.ArgumentParser):

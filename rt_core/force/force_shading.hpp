@@ -27,7 +27,7 @@ namespace tactus
 ///     e(d) = d^2 / (d + D), D = width / 16
 ///
 /// So the proxy rests where the planes hold a goal that is raised by e along the mean normal. The
-/// share D / (d + D) of a step at an edge remains. Proofs: docs/stability.md.
+/// share D / (d + D) of a step at an edge remains. Proofs: docs/internals/passivity.md.
 ///
 /// Usable on any thread: pure functions, none of which waits or allocates.
 class ForceShading

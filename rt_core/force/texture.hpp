@@ -22,7 +22,7 @@ namespace tactus
 /// So bumps give back all energy that a user puts into them. D keeps e times any curvature of h
 /// within 1/2: the proxy has one place of rest for a goal, and no wall gets stiffer along its
 /// surface. Across it the stiffness grows by e'' h <= 3 height / D = 192 (height / length)^2, at
-/// most 0.19. A push stays a push, as e'(d) <= 2 d / D. Proofs: docs/stability.md.
+/// most 0.19. A push stays a push, as e'(d) <= 2 d / D. Proofs: docs/internals/passivity.md.
 struct Texture
 {
     /// Fraction of `turns` above the next lower whole number, 0 .. 1. |turns| up to kGoalRange_m /

@@ -27,7 +27,7 @@ constexpr std::size_t kMostBatches =
 
 /// Bound on the relative rounding of a conversion to float.
 constexpr double kFloatRounding = 0x1p-22;
-/// Bound on the excess of a proposed direction's length over 1 (docs/accuracy.md).
+/// Bound on the excess of a proposed direction's length over 1 (docs/internals/proofs.md).
 constexpr double kDirectionRounding = 0x1p-20;
 /// Least height of the sphere over a face for which single precision decides, as a share of the
 /// radius.

@@ -415,7 +415,7 @@ inline constexpr float kPairMargin = 0x1p-19F;
 inline constexpr float kThinAspect = 128.0F;
 inline constexpr float kFaceMargin = 4e-5F;
 
-/// Limits for test_blocks(), whose bounds are squares (docs/accuracy.md, "The filter in squares").
+/// Limits for test_blocks(), whose bounds are squares. docs/internals/proofs.md proves them.
 inline constexpr float kSquareThinAspect = 32.0F;
 inline constexpr float kSquareMargin = 0x1p-15F;
 /// Rounding of the test whether the probe lies over a face, as a share of the farthest corner's

@@ -36,7 +36,7 @@ struct DeviceLimits
     /// Viscous damping of the mechanism alone, never of the hand: the user may let go.
     double damping_n_s_per_m{1.0};
     /// Coulomb friction of the mechanism. 0: unknown; quantisation then limits no stiffness, and a
-    /// wall may hum within the bound of docs/stability.md.
+    /// wall may hum within the bound of docs/internals/passivity.md.
     double friction_n{0.0};
     double quantum_m{0.0}; ///< Step of the measured position. 0: negligible.
     /// Delay from the reading of a position to the force that it causes, in addition to the period

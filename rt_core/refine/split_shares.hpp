@@ -21,7 +21,7 @@ namespace tactus
 ///
 /// With at least eight splits a frame, each of n requests of a class may take one in ceil(n /
 /// ceil(splits / 8)) frames, independent of the others' needs, if requests that got nothing for
-/// longest go first (docs/accuracy.md).
+/// longest go first (docs/internals/proofs.md).
 class SplitShares
 {
 public:

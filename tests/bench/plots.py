@@ -31,6 +31,8 @@ COLOURS = {"Tactus": "#0072b2", "static": "#56b4e9", "goal": "#000000", "Embree"
            "OpenMesh": "#999933", "meshoptimizer": "#7f7f7f"}
 QUANTILES = {"p50": "o", "p99": "D", "max": "^"}
 EXACT = 1e-9  # Place of an error of 0 on a logarithmic axis, in diagonals.
+# Ends of the axis of `memory`: exact, and a tool that waits for data.
+LEAST_UM, WAITS_UM = 0.1, 1000.0
 
 
 class Results:
@@ -353,7 +355,33 @@ def stream(data):
     return figure
 
 
-PICTURES = (frame, error_time, size, skip, growth, peers, force, encoder, stream)
+def memory(data):
+    """Error of the touched surface over the size of the pools, and where the tool waits instead."""
+    tools = data.names("by", "memory", metric="waits for data")
+    pools = data.names("setting", "memory", metric="waits for data")
+    figure, axes = axes_of(len(tools), 2.9, sharey=True)
+    figure.subplots_adjust(left=0.08, right=0.99, wspace=0.08)
+    for one, tool in zip(axes, tools):
+        for at, case in enumerate(data.names("case", "memory", by=tool)):
+            wanted = {"case": case, "by": tool}
+            off = data.line("memory", "setting", pools, metric="surface off by at most", **wanted)
+            waits = data.line("memory", "setting", pools, metric="waits for data", **wanted)
+            level = [WAITS_UM if share > 1 else max(value, LEAST_UM)
+                     for value, share in zip(off, waits)]
+            one.plot(range(len(pools)), [value * 1.12 ** (at - 1.5) for value in level],
+                     "osD^"[at % 4], color=("#56b4e9", "#0072b2", "#e69f00", "#d55e00")[at % 4],
+                     markersize=4, linestyle="-", linewidth=1, label=case)
+        one.set(title=tool, xlabel="pools, MiB", yscale="log", ylim=(0.6 * LEAST_UM, 2 * WAITS_UM),
+                xticks=range(len(pools)), xticklabels=[pool.split()[0] for pool in pools])
+        one.grid(color="#dddddd")
+    axes[0].set(ylabel="surface off by at most, um", yticks=(LEAST_UM, 1, 10, 100, WAITS_UM),
+                yticklabels=("exact", "1", "10", "100", "waits"))
+    axes[0].minorticks_off()
+    legend_below(figure, axes, 4)
+    return figure
+
+
+PICTURES = (frame, error_time, size, skip, growth, peers, force, encoder, stream, memory)
 
 
 def svg(picture, data):

@@ -4,14 +4,14 @@
 """Keeps the results of full runs in docs/benchmarks, one file a suite.
 
     results.py store FOLDER RESULTS      files of a run of tactus_bench --json, one for each suite
-    results.py check FOLDER PAGE [RESULTS...]
-                                         the files' form, and the tables of them in the page and in
-                                         FOLDER's own pages (*.md)
+    results.py check FOLDER PAGE... [RESULTS...]
+                                         the files' form, and the tables of them in the pages (*.md)
+                                         and in FOLDER's own
 
 A file has what tactus_bench --json writes, a row a line. store leaves and names: a suite that failed;
 one of a full run when the new one is not (--quick, --frames, --only ...) or lacks rows that it has;
 and those that counts.py renews and tests compare with. check: each file, and RESULTS, have the
-keys of HEADER and ROW; remarks and page name each commit that is not in the history of HEAD, where
+keys of HEADER and ROW; remarks and the pages name each commit that is not in the history of HEAD, where
 there is one; the page shows each picture of the folder and no other; and each table that has above it
 
     <!-- benchmarks/SUITE.json ... -->
@@ -154,9 +154,10 @@ def history_faults(page, files, folder):
             yield f"{path}: commit '{commit}' is not in this history, and the page doesn't say so"
 
 
-def check(folder, page_path, *others):
+def check(folder, *given):
     page = "\n".join(path.read_text(encoding="utf-8")
-                     for path in [page_path, *sorted(folder.glob("*.md"))])
+                     for path in [*given, *sorted(folder.glob("*"))] if path.suffix == ".md")
+    others = [path for path in given if path.suffix != ".md"]
     files = sorted(folder.glob("*.json"))
     found = [f"{path}: {fault}" for path in [*files, *others] for fault in form_faults(read(path))]
     found += [f"{path}: a row of another suite" for path in files

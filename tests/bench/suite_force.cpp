@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Suite `force`: forces on a surface where they are known (docs/benchmarks.md). A device sweeps
-/// around the bumpy sphere, 1 mm below the rest position of the proxy's centre.
+/// Suite `force`: forces on a surface where they are known (docs/benchmarks/suites.md). A device
+/// sweeps around the bumpy sphere, 1 mm below the rest position of the proxy's centre.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "tests/bench/force_rows.hpp"

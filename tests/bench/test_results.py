@@ -126,6 +126,15 @@ class Kept(unittest.TestCase):
             more.write_text(text.replace("](benchmarks/", "]("))
             self.assertEqual(self.check(PAGE), code, self.said)
 
+    def test_further_pages_are_checked_too(self):
+        self.store()
+        self.page.write_text(PAGE)
+        more = self.root / "README.md"
+        for text, code in ((PAGE, 0), (PAGE.replace("1.23,", "1.24,"), 1)):
+            more.write_text(text)
+            self.assertEqual(self.sut("results.py", "check", self.folder, self.page, more), code,
+                             self.said)
+
     def test_files_of_another_form_are_found(self):
         for change in (lambda kept: kept.pop("commit"), lambda kept: kept["machine"].pop("date_utc"),
                        lambda kept: kept["rows"][0].pop("unit"),

@@ -25,6 +25,7 @@ expect 3 'no command'
 expect 3 "unknown argument 'bild'" bild
 expect 3 "unknown argument '--fast'" build --fast
 expect 3 "'build' and 'test'" build test
+expect 3 "'docs' and 'demo'" docs demo
 expect 3 "unknown argument '--benches'" packages --benches
 expect 3 "--seconds 'ten'" demo --seconds ten
 expect 3 "--seconds '0'" demo --seconds 0

@@ -240,6 +240,10 @@ class Text(House):
                     'rt_core/base/good.hpp:5: Nobody in a comment')
         self.source('rt_core/base/good.hpp', 'int a; ///< Value of the last frame.', '// Often.')
         self.accept('plain_comments')
+        self.text('README.md', 'One.\nNobody waits, or seldom.\n```\nnobody\n```\n')
+        self.accept('plain_comments')
+        self.text(guards.BUDGETS, 'README.md 9 user\n')
+        self.refuse('plain_comments', 'README.md:2: Nobody: name', 'README.md:2: seldom: name')
 
     def test_names_that_were_renamed_are_refused(self):
         self.accept('old_names')
@@ -349,6 +353,94 @@ class Pages(House):
                   '[c](http://nowhere.org/nowhere.md) [d](page.md#a-an-other_way)\n')
         self.source('rt_core/base/good.hpp', '// See docs/' 'page.md; a thread.')
         self.accept('links')
+
+    def budget(self, *rows):
+        self.text(guards.BUDGETS, '# Pages.\n' + '\n'.join(rows) + '\n')
+
+    def test_a_page_of_too_many_words_or_without_a_budget_is_refused(self):
+        page = '# A page\n\nTwo [more words](docs/x) and `no words in code`.\n```\nno\n```\n'
+        fault = f'README.md:1: 7 words; at most 6 ({guards.BUDGETS}:2'
+        for words, faults in ((7, ()), (6, (fault,))):
+            self.text('README.md', page)
+            self.budget(f'README.md {words} user')
+            if faults:
+                self.refuse('page_words', *faults)
+            else:
+                self.accept('page_words')
+        self.text('README.md', page)
+        self.refuse('page_words', f'README.md:1: has no line in {guards.BUDGETS}')
+        self.budget('README.md 1 user', 'docs/*.md 1 contributor')
+        self.refuse('page_words', "page_words.txt:2: names 'README.md', which is not there",
+                    "page_words.txt:3: names 'docs/*.md', which is not there")
+        self.budget('README.md one user')
+        self.refuse('page_words', f'{guards.BUDGETS}:2: not PAGE WORDS', code=2)
+
+    def test_a_sentence_of_36_words_is_refused_and_one_of_35_is_not(self):
+        self.budget('README.md 999 user')
+        for words in (35, 36):
+            sentence = ' '.join(['word'] * words)
+            for page, *lines in ((f'# {sentence} a b c\n\n{sentence}.\nAnother one.\n', 3),
+                                 (f'* Short.\n* {sentence}\n* {sentence}\n', 2, 3),
+                                 (f'| a | b |\n| - | - |\n| {sentence} | {sentence} |\n', 3, 3),
+                                 (f'    {sentence} a b c\n\nA.\n`{sentence}` {sentence[5:]}\n', 3)):
+                with self.subTest(page):
+                    self.budget('README.md 999 user')
+                    self.text('README.md', page)
+                    if words == 35:
+                        self.accept('sentences')
+                    else:
+                        faults = [f'README.md:{line}: 36 words in ' for line in lines]
+                        self.refuse('sentences', *faults)
+        self.text('README.md', f'{sentence}\n\n$$\n{sentence}\n$$\n')
+        self.budget('README.md 999 contributor')
+        self.accept('sentences')
+
+    def test_tests_and_sources_on_a_page_for_users_are_refused(self):
+        self.script('tests/CMakeLists.txt', 'add_executable(t unit/test_good.cpp)',
+                    'add_test(NAME good.whole COMMAND t)')
+        text = ('`tactus/rt_core/a.hpp`, `<rt_core/a.hpp>`, `bash cmake/setup.sh`, `page.md`\n'
+                '`good.whole`, `test_good` and\n`rt_core/a.hpp`\n```\nrt_core/a.hpp\n```\n')
+        self.text('README.md', text)
+        self.text('docs/' 'page.md', text)
+        self.budget('README.md 99 user', 'docs/*.md 99 contributor')
+        self.refuse('inside_of_users_pages', "README.md:2: names '`good.whole`'",
+                    "README.md:2: names '`test_good`'", "README.md:3: names 'rt_core/a.hpp'")
+
+    def test_a_table_that_does_not_parse_is_refused(self):
+        table = '| a | b |\n| --- | :-: |\n| `a \\| b` | c |\n| d | |\n'
+        self.text('page.md', f'{table}\nWords | and |\n\n```\n| no\n```\n')
+        self.accept('tables')
+        self.text('page.md', f'{table}\n| e | f |\n| g | h |\n')
+        self.refuse('tables', 'page.md:7: a row outside of a table')
+        self.text('page.md', f'{table}| e |\n| e | f | g |\n')
+        self.refuse('tables', 'page.md:5: 1 cells in a table of 2 columns',
+                    'page.md:6: 3 cells in a table of 2 columns')
+        self.text('page.md', '| a |\n| - | - |\n')
+        self.refuse('tables', 'page.md:2: 2 columns below a head of 1')
+
+    def test_an_option_that_no_program_has_is_refused(self):
+        self.text('docs/man/p.1', '\\fB\\-\\-far\\-off\\fR\n')
+        self.text('README.md', '`p --far-off`, `cmake --preset x`, a --- b\n```\np --near=1\n```\n')
+        self.text('docs/' 'internals/decisions/1.md', '`--gone`\n')
+        self.refuse('options_named', "README.md:3: no option is called '--near'")
+
+    def test_a_version_that_the_sources_do_not_have_is_refused(self):
+        for source, _ in guards.VERSIONS.values():
+            self.text(source, (CHECKOUT / source).read_text())
+        page = (CHECKOUT / 'docs/versions.md').read_text()
+        self.text('docs/' 'versions.md', page)
+        self.accept('versions_told')
+        self.text('docs/' 'versions.md', re.sub(r'(SPM coder) \| \d+', r'\1 | 99', page))
+        (self.root / 'host_tools/c/tactus.h').unlink()
+        self.refuse('versions_told', 'docs/versions.md:1: SPM coder is 99; rt_core/spm/header.hpp',
+                    'docs/versions.md:1: C API is 3; host_tools/c/tactus.h has none')
+
+    def test_a_word_of_the_glossary_out_of_order_is_refused(self):
+        head = '| Word | Meaning |\n| --- | --- |\n'
+        self.text('docs/' 'glossary.md', f'{head}| a, B | 1 |\n| *C* | 1 |\n\n{head}| b | 1 |\n')
+        self.accept('glossary_sorted')
+        self.text('docs/' 'glossary.md', f'{head}| c | 1 |\n| B | 1 |\n| d | 1 |\n')
+        self.refuse('glossary_sorted', "docs/glossary.md:4: 'B' belongs above 'c'")
 
     def test_a_test_that_is_not_there_is_refused(self):
         def build():

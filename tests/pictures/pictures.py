@@ -422,7 +422,7 @@ def cut(studio, path):
     axes[0].add_patch(pyplot.Rectangle(place[:2] - half, 2 * half, 2 * half, fill=False,
                                        linewidth=1))
     axes[0].set_title(f"{len(triangles):,} active faces of {studio.faces():,}", fontsize=11)
-    axes[1].set_title(f"{2e3 * half:.0f} mm of it, at a tool of {1e3 * RADIUS_M:.0f} mm",
+    axes[1].set_title(f"{2e3 * half:.0f} mm around a tool of {1e3 * RADIUS_M:.0f} mm",
                       fontsize=11)
     save(figure, path)
 
@@ -484,7 +484,7 @@ def regions(studio, path):
     faces(axes[0], camera, triangles, 0.4 + 0.6 * colours)
     box_lines(axes[0], camera, moved, LOADED, 0.5, 0.6)
     frame_axes(axes[0], (0, 0), 1.1 * radius_m)
-    axes[0].set_title(f"boxes of the {len(loaded)} chunks that are loaded", fontsize=11)
+    axes[0].set_title(f"boxes of the {len(loaded)} loaded chunks", fontsize=11)
     faces(axes[1], camera, triangles, 0.4 + 0.6 * colours, edge=0.4, within=window(place, half))
     for region in state["front"]["regions"][::-1]:
         centre = camera.see(turned(numpy.array([region["center_m"]]), object_)[0])
@@ -493,7 +493,7 @@ def regions(studio, path):
             color=PREDICTED if region["is_predicted"] else PRESENT))
     tool_mark(axes[1], camera, state["tools"][0], 0)
     frame_axes(axes[1], place, half)
-    axes[1].set_title("where chunks are looked for: at the tool, predicted", fontsize=11)
+    axes[1].set_title("where chunks are searched: at the tool, predicted", fontsize=11)
     save(figure, path)
 
 
@@ -521,8 +521,8 @@ def bracket(studio, path):
                                    gridspec_kw={"height_ratios": [2, 1]})
     figure.subplots_adjust(0.075, 0.1, 0.985, 0.97, hspace=0.12)
     axes[0].fill_between(seconds, 1e3 * lower[frames], 1e3 * upper[frames], color="#a8c4ea",
-                         label="between the proven bounds L and U", linewidth=0)
-    axes[0].plot(seconds, 1e3 * true, color="black", linewidth=1, label="the true distance")
+                         label="proven bounds L and U", linewidth=0)
+    axes[0].plot(seconds, 1e3 * true, color="black", linewidth=1, label="true distance")
     axes[0].set_ylabel("distance of the centre, mm")
     axes[0].legend(frameon=False)
     for kind, colour in (("separated", "#3b78d8"), ("exact", "#2f9e6e"), ("bounded", "#d8822b")):
@@ -530,7 +530,7 @@ def bracket(studio, path):
         if of_kind.any():
             axes[1].plot(seconds[of_kind], 1e3 * (upper - lower)[frames][of_kind], ".",
                          markersize=3, color=colour, label=kind)
-    axes[1].set(xlabel="s", ylabel="U - L, mm")
+    axes[1].set(xlabel="time, s", ylabel="U - L, mm")
     axes[1].legend(frameon=False, ncol=3)
     for one in axes:
         one.grid(color="#dddddd")
@@ -549,7 +549,7 @@ def force(studio, path):
     axes[1].set_ylabel("active faces")
     axes[2].plot(seconds, take.column("splits"), color=LOADED, linewidth=0.8, label="splits")
     axes[2].plot(seconds, take.column("merges"), color=PREDICTED, linewidth=0.8, label="merges")
-    axes[2].set(xlabel="s", ylabel="a frame")
+    axes[2].set(xlabel="time, s", ylabel="per frame")
     axes[2].legend(frameon=False, ncol=2)
     for one in axes:
         one.grid(color="#dddddd")
@@ -593,7 +593,7 @@ def scene(studio, path):
     for tool in state["tools"]:
         tool_mark(axes[1], camera, tool, 0.02)
     frame_axes(axes[1], near, near_half)
-    axes[1].set_title(f"{2e3 * near_half:.0f} mm of it, at a tool", fontsize=11)
+    axes[1].set_title(f"{2e3 * near_half:.0f} mm around a tool", fontsize=11)
     save(figure, path)
 
 
@@ -711,7 +711,8 @@ def stages(studio, path):
                    labels=("T_L load", "T_R refine", "T_B refit", "T_Q query", "force"),
                    colors=(LOADED, TREE, PREDICTED, TOOL, FORCE))
     half = window_frames // 2  # There are fewer frames at the ends.
-    axes.set(xlabel="s", ylabel="us", xlim=(seconds[half], seconds[-1 - half]),
+    axes.set(xlabel="time, s", ylabel="time of a frame, us",
+             xlim=(seconds[half], seconds[-1 - half]),
              ylim=(0, 1.2 * smoothed.sum(axis=0)[half:-half].max()))
     axes.legend(frameon=False, ncol=5, loc="upper right")
     axes.grid(color="#dddddd", axis="y")
@@ -741,11 +742,11 @@ def bursts(studio, path):
         most = int(take.column("model0.pages_used").max())
         room = "all" if cache_mib is None else f"{most} pages"
         is_open = numpy.isin(kinds, ("bounded", "stale")).mean()
-        one.set_title(f"room for {room}: {int(came.sum()):,} came, {100 * is_open:.1f} % of "
-                      "the frames open", fontsize=10, loc="left")
+        one.set_title(f"capacity {room}: {int(came.sum()):,} pages loaded, "
+                      f"{100 * is_open:.1f} % of the frames bounded or stale", fontsize=10, loc="left")
         one.grid(color="#dddddd", axis="y")
-        one.set_ylabel("pages")
-    axes[-1].set(xlabel="s", xlim=(0, len(came) * 1e-3))
+        one.set_ylabel("pages loaded")
+    axes[-1].set(xlabel="time, s", xlim=(0, len(came) * 1e-3))
     save(figure, path)
 
 

@@ -92,8 +92,8 @@ bool say(const std::string& line)
     return std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0;
 }
 
-/// DDS configuration of a network by docs/protocol.md; without a double quote, so that it fits into
-/// JSON.
+/// DDS configuration of a network by docs/two-machines.md; without a double quote, so that it fits
+/// into JSON.
 std::string dds_configuration(const char* interface)
 {
     return fmt::format(

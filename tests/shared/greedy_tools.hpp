@@ -39,7 +39,7 @@ struct GreedyCase
     std::uint32_t objects{1};
 };
 
-/// Cases of docs/benchmarks.md.
+/// Cases of docs/benchmarks/scenes.md.
 [[nodiscard]] const std::vector<GreedyCase>& greedy_cases();
 
 /// Figures of the first tool while its hand is in the surface.

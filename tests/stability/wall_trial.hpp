@@ -49,8 +49,8 @@ struct WallFigures
     std::uint32_t contacts{0};
     /// Greatest excess of a contact, from its first sample in the wall to its first outside: work
     /// of the motors minus the losses by the device's damping and friction, minus K (v T + q)^2 / 2
-    /// and the quantisation's share (K q / 2 - f) x way if positive. docs/stability.md claims at
-    /// most 0.
+    /// and the quantisation's share (K q / 2 - f) x way if positive. docs/internals/passivity.md
+    /// claims at most 0.
     double worst_excess_j{-1.0};
     double largest_contact_j{-1.0}; ///< Greatest work minus losses of a contact.
 };

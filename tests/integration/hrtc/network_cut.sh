@@ -66,7 +66,7 @@ check report.json safety.begun.server == 1 models.0.static == 0
 "$list_safety" report.json | tee events.txt
 read -r gone idle back < <(fade <events.txt) || fail 'the force did not fade and come back'
 echo "the server was gone from frame $gone to $back, the force off in $idle"
-# docs/safety.md, "The law", and five frames. Fewer if the machine kept some from being run.
+# docs/safety.md, "Fade and rise", and five frames. Fewer if the machine kept some from being run.
 ((idle - gone <= 55)) || fault "there was force for $((idle - gone)) frames"
 judge_run large.spm "$gone" "$back"
 check_span_contact 0 0.1
