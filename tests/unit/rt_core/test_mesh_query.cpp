@@ -77,8 +77,8 @@ struct AllPairs
 {
     double lower{kInfinity};
     double upper{kInfinity};           ///< Least distance of exact faces.
-    double coarse_lower{kInfinity};    ///< Of pairs with a face above the tolerance, less errors.
-    double tolerated_lower{kInfinity}; ///< Of pairs with a coarse face within it, less errors.
+    double coarse_lower{kInfinity};    ///< Pairs with a face above the tolerance, less errors.
+    double tolerated_lower{kInfinity}; ///< Pairs with a coarse face within it, less errors.
     double surface{kInfinity};         ///< Least distance of faces that count as the surface.
     double corners{kInfinity};         ///< Least distance of two corners.
     std::set<MeetingFaces> meeting;
