@@ -146,7 +146,10 @@ void HapticLoop::wait_for_deadline() noexcept
     parts_.timer->sleep_until_margin();
     const ThreadUsage awake = thread_usage();
     const MonotonicTime awake_at = parts_.clock->now();
-    warm_caches();
+    if (!parts_.is_virtual) // There is no wait in which caches could grow cold.
+    {
+        warm_caches();
+    }
     measures_.beside += parts_.clock->now() - awake_at;
     const ThreadUsage ready = thread_usage();
     measures_.cycle = parts_.timer->spin_until_deadline();
@@ -337,7 +340,12 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
     {
         const DeadlineAccount& deadlines = statistics_.deadlines;
         parts_.hands->show(
-            {frame_, states_, devices_, forces_, radii_m_, output,
+            {frame_,
+             states_,
+             devices_,
+             forces_,
+             radii_m_,
+             output,
              {frame_ + 1, deadlines.missed, deadlines.overruns, deadlines.latency_misses}});
     }
 }
