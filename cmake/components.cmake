@@ -264,11 +264,11 @@ tactus_component(c NEEDS core transport MODULES tactus_c LINK_PRIVATE fmt::fmt
 install(FILES ${PROJECT_SOURCE_DIR}/host_tools/c/tactus.h
     DESTINATION ${TACTUS_HEADER_DIR}/tactus COMPONENT libtactus-dev)
 
-# The public class World, and with it the loop of hrtc. It brings all other components but c.
+# The public class World, and with it the loop of hrtc. It brings all other components.
 tactus_component(tactus
-    NEEDS core transport platform host
+    NEEDS core transport platform host c
     MODULES tactus_loop tactus_choices tactus_scene_keeper tactus_controller tactus_readers
-        tactus_scene tactus_build tactus_world tactus_no_allocation_counter
+        tactus_scene tactus_build tactus_world tactus_c_world tactus_no_allocation_counter
     LINK_PRIVATE fmt::fmt CycloneDDS::ddsc Threads::Threads
     PC_REQUIRES_PRIVATE fmt CycloneDDS
     PC_LIBS_PRIVATE -pthread

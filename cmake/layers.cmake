@@ -163,7 +163,7 @@ tactus_module(host_tools/build ${host_layer} host_tools/mesh host_tools/simplify
 # Local servers of HTTP: metrics, and the streams of a viewer.
 tactus_module(host_tools/web ${host_layer})
 # The library for C and what calls C.
-tactus_module(host_tools/c ${host_layer})
+tactus_module(host_tools/c ${host_layer} platform/world)
 # The library for Python, on that for C.
 tactus_module(host_tools/python host_tools/c)
 # The program that makes models of meshes and scenes.

@@ -74,6 +74,8 @@ try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers a
     "$1/examples/hello" ring.spm >"$1.txt" || fail "$1: hello ends with $?"
     [[ -e hello.txt ]] || cp "$1.txt" hello.txt
     cmp hello.txt "$1.txt" || fail "$1: hello feels something else"
+    "$1/examples/hello_c" ring.spm | cmp - hello.txt || fail "$1: hello in C feels something else"
+    "$1/world" ring.spm >"$1.txt" || fail "$1: world ends with $?"
     "$1/examples/guarded" ring.spm >"$1.txt" || fail "$1: guarded ends with $?: $(<"$1.txt")"
 }
 touches() { # touches PROGRAM: prints the same as the others, and its recording replays.
