@@ -127,7 +127,7 @@ public:
     WorldObject add(const WorldObject& like, const ObjectOptions& options = {});
     /// Adds a tool with its device. Only before the first frame.
     Hand add(const WorldTool& tool, const WorldDevice& device = by_program(),
-                           const HandOptions& options = {});
+             const HandOptions& options = {});
     /// Adds all objects of a glTF scene as spm_build writes it, with its model files beside it. A
     /// World with a scene has no other objects at the start.
     std::vector<WorldObject> add_scene(const std::string& path);
