@@ -23,6 +23,9 @@ set(TACTUS_PKGCONFIG_CFLAGS "${numerics_options_text} ${numerics_flags_text}")
 
 configure_file(${PROJECT_SOURCE_DIR}/cmake/version.hpp.in
     ${CMAKE_BINARY_DIR}/installed/version.hpp @ONLY)
+set(TACTUS_WORLD_HEADER <tactus/platform/world/world.hpp>)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/world.hpp.in
+    ${CMAKE_BINARY_DIR}/installed/world.hpp @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/installed/version.hpp
     DESTINATION ${TACTUS_HEADER_DIR}/tactus COMPONENT libtactus-dev)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/TactusConfig.cmake.in
@@ -38,10 +41,14 @@ install(FILES ${CMAKE_BINARY_DIR}/installed/TactusConfig.cmake
 function(tactus_component_library name kind)
     string(TOLOWER ${kind} suffix)
     set(library tactus_${name}_${suffix})
+    set(file_name tactus_${name})
+    if(name STREQUAL tactus) # The one that brings all others.
+        set(file_name tactus)
+    endif()
     list(TRANSFORM ARG_MODULES REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
     add_library(${library} ${kind} ${objects})
     set_target_properties(${library} PROPERTIES
-        LINKER_LANGUAGE CXX OUTPUT_NAME tactus_${name} EXPORT_NAME ${name}
+        LINKER_LANGUAGE CXX OUTPUT_NAME ${file_name} EXPORT_NAME ${name}
         VERSION ${PROJECT_VERSION} SOVERSION ${TACTUS_SOVERSION})
     target_compile_features(${library} INTERFACE cxx_std_20)
     target_compile_options(${library} INTERFACE ${numerics_options})
@@ -104,12 +111,17 @@ PC_REQUIRES_PRIVATE;PC_LIBS_PRIVATE" ${ARGN})
     string(STRIP "${requires} ${TACTUS_PC_REQUIRES}" TACTUS_PC_REQUIRES)
     list(JOIN ARG_PC_REQUIRES_PRIVATE " " TACTUS_PC_REQUIRES_PRIVATE)
     list(JOIN ARG_PC_LIBS_PRIVATE " " TACTUS_PC_LIBS_PRIVATE)
-    set(TACTUS_PC_NAME ${name})
+    set(TACTUS_PC_MODULE tactus-${name})
+    set(TACTUS_PC_LIBRARY tactus_${name})
+    if(name STREQUAL tactus)
+        set(TACTUS_PC_MODULE tactus)
+        set(TACTUS_PC_LIBRARY tactus)
+    endif()
     file(RELATIVE_PATH TACTUS_PC_PREFIX
         ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
     configure_file(${PROJECT_SOURCE_DIR}/cmake/tactus.pc.in
-        ${CMAKE_BINARY_DIR}/installed/tactus-${name}.pc @ONLY)
-    install(FILES ${CMAKE_BINARY_DIR}/installed/tactus-${name}.pc
+        ${CMAKE_BINARY_DIR}/installed/${TACTUS_PC_MODULE}.pc @ONLY)
+    install(FILES ${CMAKE_BINARY_DIR}/installed/${TACTUS_PC_MODULE}.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT libtactus-dev)
 endfunction()
 
@@ -250,4 +262,20 @@ tactus_component(c NEEDS core transport MODULES tactus_c LINK_PRIVATE fmt::fmt
     PC_REQUIRES_PRIVATE fmt PC_LIBS_PRIVATE -lstdc++)
 # It includes nothing of ours, and has one name in every language.
 install(FILES ${PROJECT_SOURCE_DIR}/host_tools/c/tactus.h
+    DESTINATION ${TACTUS_HEADER_DIR}/tactus COMPONENT libtactus-dev)
+
+# The public class World, and with it the loop of hrtc. It brings all other components.
+tactus_component(tactus
+    NEEDS core transport platform host c
+    MODULES tactus_loop tactus_choices tactus_scene_keeper tactus_controller tactus_readers
+        tactus_scene tactus_build tactus_world tactus_c_world tactus_no_allocation_counter
+    LINK_PRIVATE fmt::fmt CycloneDDS::ddsc Threads::Threads
+    PC_REQUIRES_PRIVATE fmt CycloneDDS
+    PC_LIBS_PRIVATE -pthread
+    PUBLIC
+        platform/loop/hand_state.hpp
+        platform/world/world.hpp
+        platform/world/world_options.hpp
+        platform/world/world_parts.hpp)
+install(FILES ${CMAKE_BINARY_DIR}/installed/world.hpp
     DESTINATION ${TACTUS_HEADER_DIR}/tactus COMPONENT libtactus-dev)

@@ -134,9 +134,16 @@ tactus_module(platform/diagnose platform/diagnose/doctor platform/report platfor
 # What the machine is like, as far as it matters for the loop; of frames and models it knows
 # nothing.
 tactus_module(platform/diagnose/doctor platform/machine transport/base)
-# The program hrtc: main(), its commands, the replay of a recording. It alone of platform reads the
-# meshes and scenes of host_tools, and lends the readers to the rest.
-tactus_module(platform/hrtc rt_core transport platform host_tools/mesh host_tools/scene)
+# The readers of meshes and scenes of host_tools, which programs lend to the rest of platform.
+tactus_module(platform/readers platform/scene platform/choices platform/loop platform/machine
+    platform/devices transport rt_core host_tools/mesh host_tools/scene)
+# The public class World: objects, hands and their loop for programs of others. It encodes meshes,
+# too.
+tactus_module(platform/world platform/readers platform/controller platform/scene platform/choices
+    platform/loop platform/machine platform/devices platform/recording transport rt_core
+    host_tools/mesh host_tools/build)
+# The program hrtc: main(), its commands, the replay of a recording.
+tactus_module(platform/hrtc rt_core transport platform)
 
 # --- host_tools: the graphics station's libraries and programs. No module includes a program.
 set(host_layer transport/base rt_core transport)
@@ -151,15 +158,17 @@ tactus_module(host_tools/shapes ${host_layer} host_tools/mesh)
 tactus_module(host_tools/simplify ${host_layer} host_tools/mesh)
 # Models written and taken apart: records, pieces, regions, cut-outs.
 tactus_module(host_tools/encode ${host_layer} host_tools/mesh host_tools/simplify)
+# A mesh in memory as a model's file, as spm_build and a World make it.
+tactus_module(host_tools/build ${host_layer} host_tools/mesh host_tools/simplify host_tools/encode)
 # Local servers of HTTP: metrics, and the streams of a viewer.
 tactus_module(host_tools/web ${host_layer})
 # The library for C and what calls C.
-tactus_module(host_tools/c ${host_layer})
+tactus_module(host_tools/c ${host_layer} platform/world)
 # The library for Python, on that for C.
 tactus_module(host_tools/python host_tools/c)
 # The program that makes models of meshes and scenes.
 tactus_module(host_tools/spm_build ${host_layer} platform/program host_tools/mesh host_tools/scene
-    host_tools/shapes host_tools/simplify host_tools/encode)
+    host_tools/shapes host_tools/simplify host_tools/encode host_tools/build)
 # The program that looks into a model.
 tactus_module(host_tools/spm_inspect ${host_layer} platform/program host_tools/mesh
     host_tools/encode)
@@ -182,7 +191,7 @@ tactus_external(nlohmann platform/diagnose platform/hrtc platform/plot platform/
     tests)
 tactus_external(fmt platform/choices platform/controller platform/diagnose platform/export
     platform/hrtc platform/options platform/plot platform/program platform/report platform/scene
-    transport host_tools tests)
+    platform/world transport host_tools tests)
 tactus_external(assimp host_tools/mesh tests)
 tactus_external(tbb host_tools tests)
 # The only modules that speak HTTP.

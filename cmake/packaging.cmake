@@ -78,6 +78,8 @@ foreach(component core transport platform host c)
     string(APPEND shlibs_text "libtactus_${component} ${TACTUS_SOVERSION} libtactus0 \
 (>= ${PROJECT_VERSION}), libtactus0 (<< ${next_version}~)\n")
 endforeach()
+string(APPEND shlibs_text "libtactus ${TACTUS_SOVERSION} libtactus0 \
+(>= ${PROJECT_VERSION}), libtactus0 (<< ${next_version}~)\n")
 string(STRIP "${shlibs_text}" shlibs_text)
 tactus_package(libtactus0
     SECTION libs

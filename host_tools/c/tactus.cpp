@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/c/tactus.h"
 
+#include "host_tools/c/calls.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/frame/list_touches.hpp"
 #include "rt_core/geometry/object_speed_limit.hpp"
@@ -38,6 +39,7 @@
 #include <vector>
 
 using namespace tactus;
+using namespace tactus::c_calls;
 
 struct tactus_model
 {
@@ -80,163 +82,12 @@ struct tactus_frame
 namespace
 {
 
-/// Exception for a fault; the call returns `result` and writes `text`.
-struct Fault
-{
-    tactus_result result;
-    std::string text;
-};
-
 /// Mutex and list of existing frames, to detect memory or models used twice.
 std::mutex registry_mutex;
 std::vector<const tactus_frame*>& registry()
 {
     static std::vector<const tactus_frame*> frames;
     return frames;
-}
-
-void tell(tactus_error* error, const std::string& text) noexcept
-{
-    if (error != nullptr)
-    {
-        const std::size_t length = std::min(text.size(), sizeof(error->text) - 1);
-        std::memcpy(error->text, text.data(), length);
-        error->text[length] = '\0';
-    }
-}
-
-/// Executes a call; converts every exception to a result.
-template <typename Work>
-tactus_result guarded(tactus_error* error, Work&& work) noexcept
-{
-    try
-    {
-        work();
-        if (error != nullptr)
-        {
-            error->text[0] = '\0';
-        }
-        return TACTUS_DONE;
-    }
-    catch (const Fault& fault)
-    {
-        tell(error, fault.text);
-        return fault.result;
-    }
-    catch (const std::bad_alloc&)
-    {
-        tell(error, "out of memory");
-    }
-    catch (const std::exception& exception)
-    {
-        tell(error, exception.what());
-    }
-    return TACTUS_REFUSED;
-}
-
-template <typename... Arguments>
-[[noreturn]] void refuse(tactus_result result, fmt::format_string<Arguments...> format,
-                         Arguments&&... arguments)
-{
-    throw Fault{result, fmt::format(format, std::forward<Arguments>(arguments)...)};
-}
-
-template <typename T>
-const T& given(const T* pointer, const char* name)
-{
-    if (pointer == nullptr)
-    {
-        refuse(TACTUS_BAD_ARGUMENT, "{}: null pointer", name);
-    }
-    return *pointer;
-}
-
-template <typename T>
-T& given(T* pointer, const char* name)
-{
-    return const_cast<T&>(given(static_cast<const T*>(pointer), name));
-}
-
-template <typename Record>
-void check_size(const Record& record, const char* name)
-{
-    if (record.size != sizeof(Record))
-    {
-        refuse(TACTUS_BAD_VERSION,
-               "{}: size is {}, this library needs {}; compile with the tactus.h of this version, "
-               "and set size (the _default functions do)",
-               name, record.size, sizeof(Record));
-    }
-}
-
-void check_abi(std::uint32_t abi)
-{
-    if (abi != TACTUS_ABI)
-    {
-        refuse(TACTUS_BAD_VERSION,
-               "the program was compiled for ABI version {}; this library has {}", abi, TACTUS_ABI);
-    }
-}
-
-void check_range(double value, double low, double high, const std::string& name)
-{
-    if (!(value >= low && value <= high)) // Also refuses NaN.
-    {
-        refuse(TACTUS_BAD_ARGUMENT, "{}: {}; {} to {} is allowed", name, value, low, high);
-    }
-}
-
-/// Refuses an array with a number that is not finite.
-void check_finite(const double* values, std::size_t count, const char* name)
-{
-    const double* end = values + count;
-    const double* bad = std::find_if_not(values, end, [](double v) { return std::isfinite(v); });
-    if (bad != end)
-    {
-        refuse(TACTUS_BAD_ARGUMENT, "{}: element {} is {}; numbers must be finite", name,
-               bad - values, *bad);
-    }
-}
-
-void check_positions(const double* values_m, std::size_t count, const char* name)
-{
-    for (std::size_t i = 0; i < 3 * count; ++i)
-    {
-        if (!(std::abs(values_m[i]) < kGoalRange_m)) // Also refuses NaN.
-        {
-            refuse(TACTUS_BAD_ARGUMENT, "{}: element {} is {}; its magnitude must be below {} m",
-                   name, i, values_m[i], kGoalRange_m);
-        }
-    }
-}
-
-Vec3 to_vec(const double* values)
-{
-    return {values[0], values[1], values[2]};
-}
-
-Mat3 to_rotation(const double* rows)
-{
-    Mat3 rotation;
-    rotation << rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7], rows[8];
-    return rotation;
-}
-
-void write(double* to, std::size_t index, const Vec3& value)
-{
-    if (to != nullptr)
-    {
-        std::copy_n(value.data(), 3, to + 3 * index);
-    }
-}
-
-template <typename T>
-void write(T* to, std::size_t index, T value)
-{
-    if (to != nullptr)
-    {
-        to[index] = value;
-    }
 }
 
 // --- Models --------------------------------------------------------------------------------------
@@ -297,54 +148,6 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
         spec.core = Box{half_m};
     }
     return spec;
-}
-
-ObjectPose pose_of(const tactus_pose& pose, const std::string& name)
-{
-    check_finite(pose.rotation, 9, (name + "rotation").c_str());
-    for (const double coordinate_m : pose.translation_m)
-    {
-        check_range(coordinate_m, -kPoseReachMax_m, kPoseReachMax_m, name + "translation_m");
-    }
-    check_range(pose.scale, kPoseScaleMin, kPoseScaleMax, name + "scale");
-    ObjectPose place;
-    place.rotation = to_rotation(pose.rotation);
-    if (!is_rotation(place.rotation, kRotationTolerance))
-    {
-        refuse(TACTUS_BAD_ARGUMENT, "{}rotation: not a rotation within {}", name,
-               kRotationTolerance);
-    }
-    place.rotation = orthonormalised(place.rotation);
-    place.translation_m = to_vec(pose.translation_m);
-    place.scale = pose.scale;
-    return place;
-}
-
-Material material_of(const tactus_material& from)
-{
-    check_size(from, "material");
-    Material material;
-    if (from.stiffness_n_per_m != 0.0)
-    {
-        check_range(from.stiffness_n_per_m, 1e-3, 1e6, "material.stiffness_n_per_m");
-        material.stiffness_n_per_m = from.stiffness_n_per_m;
-    }
-    check_range(from.static_friction, 0.0, kRoughest, "material.static_friction");
-    check_range(from.dynamic_friction, 0.0, from.static_friction, "material.dynamic_friction");
-    check_range(from.damping_n_s_per_m, 0.0, kMostDamped_n_s_per_m, "material.damping_n_s_per_m");
-    check_range(from.viscosity_n_s_per_m, 0.0, kMostDamped_n_s_per_m,
-                "material.viscosity_n_s_per_m");
-    check_range(from.texture_length_m, from.texture_height_m > 0.0 ? kTextureLengthMin_m : 0.0,
-                kTextureLengthMax_m, "material.texture_length_m");
-    check_range(from.texture_height_m, 0.0, kTextureSteepest * from.texture_length_m,
-                "material.texture_height_m");
-    material.static_friction = from.static_friction;
-    material.dynamic_friction = from.dynamic_friction;
-    material.damping_n_s_per_m = from.damping_n_s_per_m;
-    material.viscosity_n_s_per_m = from.viscosity_n_s_per_m;
-    material.texture_height_m = from.texture_height_m;
-    material.texture_length_m = from.texture_length_m;
-    return material;
 }
 
 /// Adds a change for the next frame; it replaces a pending change of the same kind and object.

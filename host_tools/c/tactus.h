@@ -292,3 +292,152 @@ typedef struct tactus_frame_state
 
 TACTUS_CALL tactus_result tactus_frame_state_of(const tactus_frame* frame,
                                                 tactus_frame_state* state, tactus_error* error);
+
+/* ---- Worlds ---- */
+
+/* Objects, hands and the guarded loop of hrtc in one handle, as the class tactus::World of C++
+ * (docs/library.md). These calls are in the library of CMake's target Tactus::tactus and of
+ * pkg-config's module tactus. Strings are UTF-8 in the words of hrtc's options.
+ *
+ * Threads: tactus_world_state(), _hold(), _move(), _feel(), _remove(), _counts() and _stop() are
+ * for any thread and never block the loop; one thread makes the other calls. */
+
+typedef struct tactus_world tactus_world;
+/* An object or a hand of one world. 0: none. */
+typedef uint64_t tactus_handle;
+
+/* Options of a world: those of hrtc, with its ranges. tactus_world_options_default() sets all. */
+typedef struct tactus_world_options
+{
+    size_t size;
+    uint32_t abi;                /* TACTUS_ABI */
+    uint32_t objects_max;        /* Largest number of objects; 0: the number at the start. */
+    int64_t rate_hz;             /* 100 to 10000 [default: 1000] */
+    double memory_mib;           /* 0.25 to 4096 [default: 2] */
+    double stiffness_n_per_m;    /* 1 to 3000 [default: 500] */
+    double object_speed_m_per_s; /* Speed limit of objects near a tool [default: 0.5] */
+    double wait_s;               /* Longest wait for a device or a server [default: 10] */
+    double duration_s;           /* Duration of the loop of start; 0: until stopped. */
+    uint32_t domain;             /* DDS domain of servers and viewers. */
+    int32_t is_watched;          /* Not 0: viewers can see the world. */
+    int32_t follows_poses;       /* Not 0: servers move their objects [default: 1] */
+    int32_t loads_whole;         /* Not 0: a model that fits is loaded as a whole [default: 1] */
+    int32_t allow_no_rt;         /* Not 0: start without real-time rights. */
+    int32_t has_no_guardian;     /* Not 0: no process guards dhd and plugin devices. */
+    const char* record;          /* File of a recording; null: none. */
+} tactus_world_options;
+TACTUS_CALL void tactus_world_options_default(tactus_world_options* options);
+
+/* A model: a file, a mesh, or the name of a published model. */
+typedef enum tactus_source
+{
+    TACTUS_MODEL_FILE = 0, /* `text` is the path of an .spm file. */
+    TACTUS_MESH_FILE = 1,  /* `text` is the path of a mesh in `unit`; it is encoded at once. */
+    TACTUS_PUBLISHED = 2,  /* `text` is NAME, NAME@HASH or NAME@SERVER. */
+    TACTUS_MESH = 3        /* A mesh in memory in `unit`, named `text`; it is encoded at once. */
+} tactus_source;
+
+/* An object of a world. tactus_world_object_default() sets an identity pose and the unit m. */
+typedef struct tactus_world_object
+{
+    size_t size;
+    int32_t source; /* tactus_source */
+    uint32_t vertex_count;
+    const char* text;
+    const char* unit;       /* m, cm, mm, in or inch. */
+    const double* vertices; /* vertex_count x 3 */
+    const uint32_t* faces;  /* face_count x 3 */
+    size_t face_count;
+    tactus_pose pose;
+    const tactus_material* material; /* Null: smooth, as stiff as the tool. */
+} tactus_world_object;
+TACTUS_CALL void tactus_world_object_default(tactus_world_object* object);
+
+/* Makes a world; the caller owns it until tactus_world_end(), which stops it. Null has no effect.
+ */
+TACTUS_CALL tactus_result tactus_world_make(const tactus_world_options* options,
+                                            tactus_world** world, tactus_error* error);
+TACTUS_CALL void tactus_world_end(tactus_world* world);
+
+/* Adds an object. TACTUS_REFUSED for an unsuitable model; the world may be used all the same. */
+TACTUS_CALL tactus_result tactus_world_add(tactus_world* world, const tactus_world_object* object,
+                                           tactus_handle* handle, tactus_error* error);
+/* Adds a hand before the first frame: a tool as for --tool, such as "sphere:0.002", and a device as
+ * for --device; null: the program moves the hand. */
+TACTUS_CALL tactus_result tactus_world_add_hand(tactus_world* world, const char* tool,
+                                                const char* device, tactus_handle* hand,
+                                                tactus_error* error);
+
+/* Starts the guarded loop, and ends it. A world that has ended never runs again. */
+TACTUS_CALL tactus_result tactus_world_start(tactus_world* world, tactus_error* error);
+TACTUS_CALL tactus_result tactus_world_stop(tactus_world* world, tactus_error* error);
+
+/* Largest number of contacts of a hand. */
+#define TACTUS_HAND_CONTACTS 4U
+
+/* Bounds and nearest points of a tool and one object near it, world frame. */
+typedef struct tactus_hand_contact
+{
+    uint32_t object;     /* Number of the object: the n-th added has n - 1, from the start. */
+    int32_t kind;        /* tactus_kind */
+    int32_t is_touched;  /* Not 0: the tool may touch the object. */
+    double lower_m;      /* Bounds of the distance from the tool's core. */
+    double upper_m;      /* Infinite if unknown. */
+    double on_tool_m[3]; /* Nearest points, of an exact answer. */
+    double on_object_m[3];
+} tactus_hand_contact;
+
+/* State of a hand after the newest frame. */
+typedef struct tactus_hand_state
+{
+    size_t size;
+    uint64_t frame; /* Number of frames; 0: none has run. */
+    double force_n[3];
+    double torque_nm[3];
+    double position_m[3];
+    double proxy_m[3];
+    double proxy_rotation[9];
+    int32_t in_contact;
+    int32_t began_inside;
+    int32_t withheld; /* Not 0: less than the surface's force is sent; `why` says why. */
+    uint32_t causes;  /* Bits of the causes (docs/safety.md), in their order there. */
+    uint32_t buttons;
+    uint32_t contact_count;
+    tactus_hand_contact contacts[TACTUS_HAND_CONTACTS];
+    char why[256]; /* One line; empty if nothing is withheld. */
+} tactus_hand_state;
+
+TACTUS_CALL tactus_result tactus_world_state(const tactus_world* world, tactus_handle hand,
+                                             tactus_hand_state* state, tactus_error* error);
+/* Moves a hand of the program for the next frames. `rotation` has 9 numbers; null: identity. */
+TACTUS_CALL tactus_result tactus_world_hold(tactus_world* world, tactus_handle hand,
+                                            const double* position_m, const double* rotation,
+                                            tactus_error* error);
+/* Runs the next frame in a loop of one's own, `dt_s` after the last one; 0: one period. `hand`
+ * moves to the pose; 0: all hands stay. The first call opens models and devices. `state` may be
+ * null. */
+TACTUS_CALL tactus_result tactus_world_step(tactus_world* world, tactus_handle hand,
+                                            const double* position_m, const double* rotation,
+                                            double dt_s, tactus_hand_state* state,
+                                            tactus_error* error);
+
+/* Moves an object, changes its material, removes it. TACTUS_REFUSED if it was removed before. */
+TACTUS_CALL tactus_result tactus_world_move(tactus_world* world, tactus_handle object,
+                                            const tactus_pose* pose, tactus_error* error);
+TACTUS_CALL tactus_result tactus_world_feel(tactus_world* world, tactus_handle object,
+                                            const tactus_material* material, tactus_error* error);
+TACTUS_CALL tactus_result tactus_world_remove(tactus_world* world, tactus_handle object,
+                                              tactus_error* error);
+
+typedef struct tactus_world_counts
+{
+    size_t size;
+    uint64_t frames;
+    uint64_t missed;         /* Deadlines missed. */
+    uint64_t overruns;       /* Frames that took too long. */
+    uint64_t latency_misses; /* Frames that the machine woke too late. */
+    uint64_t brakes;         /* Brakes by the supervisor. */
+    int32_t is_running;      /* Not 0: the loop of start runs. */
+} tactus_world_counts;
+TACTUS_CALL tactus_result tactus_world_counts_of(const tactus_world* world,
+                                                 tactus_world_counts* counts, tactus_error* error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/c/tactus.h"
+#include "host_tools/python/arrays.hpp"
 
 #include <array>
 #include <cstddef>
@@ -18,31 +19,10 @@
 #include <vector>
 
 namespace py = pybind11;
+using namespace tactus_python;
 
 namespace
 {
-
-/// Exception for a fault of a call; tactus.Error in Python.
-struct TactusError : std::runtime_error
-{
-    using std::runtime_error::runtime_error;
-};
-
-/// Calls a function of tactus.h; throws a TactusError with the line of a fault.
-template <typename Call>
-void check(Call&& call)
-{
-    tactus_error error{};
-    switch (call(&error))
-    {
-    case TACTUS_DONE:
-        return;
-    case TACTUS_BAD_ARGUMENT:
-        throw py::value_error(error.text);
-    default:
-        throw TactusError(error.text);
-    }
-}
 
 // --- Models --------------------------------------------------------------------------------------
 
@@ -82,57 +62,6 @@ private:
     tactus_model* model_{nullptr};
     tactus_model_info info_{};
 };
-
-// --- Arrays --------------------------------------------------------------------------------------
-
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-std::string shape_text(const py::array& array)
-{
-    return py::str(py::tuple(array.attr("shape")));
-}
-
-/// Floats or integers as doubles in C order.
-Numbers numbers_of(const py::object& given, const char* name)
-{
-    const py::array array = py::array::ensure(given);
-    const char kind = array ? array.dtype().kind() : '?';
-    if (std::string_view("fiu").find(kind) == std::string_view::npos)
-    {
-        PyErr_Clear();
-        const std::string type = array ? py::str(array.dtype()) : py::str(py::type::of(given));
-        throw py::type_error(std::string(name) + ": " + type + "; an array of numbers is needed");
-    }
-    return Numbers::ensure(array);
-}
-
-void check_shape(const Numbers& array, const std::vector<py::ssize_t>& shape, const char* name)
-{
-    const std::vector<py::ssize_t> is(array.shape(), array.shape() + array.ndim());
-    if (is != shape)
-    {
-        throw py::value_error(std::string(name) + ": shape " + shape_text(array) + "; " +
-                              std::string(py::str(py::tuple(py::cast(shape)))) + " is needed");
-    }
-}
-
-void read_pose(tactus_pose& pose, const py::object& rotation, const py::object& translation_m,
-               double scale)
-{
-    pose.scale = scale;
-    if (!rotation.is_none())
-    {
-        const Numbers rows = numbers_of(rotation, "rotation");
-        check_shape(rows, {3, 3}, "rotation");
-        std::copy_n(rows.data(), 9, pose.rotation);
-    }
-    if (!translation_m.is_none())
-    {
-        const Numbers place = numbers_of(translation_m, "translation_m");
-        check_shape(place, {3}, "translation_m");
-        std::copy_n(place.data(), 3, pose.translation_m);
-    }
-}
 
 // --- Set-up --------------------------------------------------------------------------------------
 
@@ -580,4 +509,5 @@ Scale 0.001 to 1000, translation within 10,000 m; friction 0 to 3, dynamic at mo
             "viscosity_n_s_per_m"_a = 0.0, "texture_height_m"_a = 0.0, "texture_length_m"_a = 0.0,
             "Sets the material of an object from the next frame on; contacts blend to it in 50 ms.")
         .def("state", &Frame::state);
+    add_world(module);
 }

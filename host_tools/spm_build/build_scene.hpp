@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/spm_build/build_model.hpp"
+#include "host_tools/build/build_model.hpp"
 #include "host_tools/spm_build/placing.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
@@ -20,7 +20,7 @@ struct SceneModel
 {
     std::string name; ///< Name of its file, without ".spm".
     std::size_t objects{0};
-    Outcome outcome;
+    BuiltModel outcome;
     std::vector<std::string> notes;
 };
 

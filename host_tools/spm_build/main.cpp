@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/build/build_model.hpp"
+#include "host_tools/build/memory_need.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
-#include "host_tools/spm_build/build_model.hpp"
 #include "host_tools/spm_build/build_scene.hpp"
-#include "host_tools/spm_build/memory_need.hpp"
+#include "host_tools/spm_build/figures.hpp"
 #include "host_tools/spm_build/options.hpp"
 #include "host_tools/spm_build/placing.hpp"
 #include "host_tools/spm_build/size_notes.hpp"
@@ -73,7 +74,7 @@ Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<st
     return std::move(mesh).value();
 }
 
-Result<Outcome, Refusal> build(const Options& options, std::vector<std::string>& notes)
+Result<BuiltModel, Refusal> build(const Options& options, std::vector<std::string>& notes)
 {
     // A place that cannot be written is refused before minutes of work; the file itself is written
     // last.
@@ -111,7 +112,7 @@ Result<Outcome, Refusal> build(const Options& options, std::vector<std::string>&
     return outcome;
 }
 
-void print_summary(const Options& options, const Outcome& outcome)
+void print_summary(const Options& options, const BuiltModel& outcome)
 {
     const nlohmann::json figures = figures_of(outcome);
     if (options.json)

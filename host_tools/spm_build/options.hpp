@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/build/build_model.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
-#include "host_tools/spm_build/build_model.hpp"
 #include "host_tools/spm_build/placing.hpp"
 
 #include <cstdint>

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/build/build_model.hpp"
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/scene/scene.hpp"
-#include "host_tools/spm_build/build_model.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/base/refusal.hpp"

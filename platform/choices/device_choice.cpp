@@ -229,6 +229,10 @@ Result<std::unique_ptr<HapticDevice>, Refusal> open_device(const DeviceChoice& c
     {
         return open_replay(choice.recording, tool);
     }
+    if (choice.kind == DeviceKind::program)
+    {
+        return choice.make();
+    }
     auto frame = DeviceFrame::create(choice.frame);
     if (!frame)
     {

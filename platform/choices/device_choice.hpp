@@ -30,6 +30,7 @@ enum class DeviceKind : std::uint8_t
     dhd,
     replay,
     plugin,
+    program, ///< Made by the program that runs the loop.
 };
 
 /// Device of one tool, as given by --device, --device-limits and --device-frame.
@@ -47,6 +48,8 @@ struct DeviceChoice
     std::string words;     ///< Words for the plugin's device.
     /// Pose of the device's coordinates in the world.
     Similarity frame;
+    /// Makes the device of DeviceKind::program; empty for others.
+    std::function<Result<std::unique_ptr<HapticDevice>, Refusal>()> make;
 };
 
 /// Parses one of the forms that --help shows.

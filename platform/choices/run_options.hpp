@@ -47,6 +47,8 @@ struct ToolOptions
     std::optional<FixtureChoice> fixture;
     DeviceChoice device;
     OperatorChoice simulated; ///< Operator of a simulated device.
+    /// External force of a program, borrowed; null without one, and with a fixture.
+    ExternalForceSource* external_force{nullptr};
 
     /// Mesh model of the tool's shape; empty if the tool is no mesh.
     [[nodiscard]] std::string mesh_model() const
@@ -71,6 +73,8 @@ struct Options
     /// SceneRoom::of().
     std::uint32_t objects_max{0};
     std::vector<ToolOptions> tools{1};
+    /// False: no process brakes the devices of wants_guard() if this one is killed.
+    bool has_guardian{true};
     std::vector<DeviceFault> device_faults; ///< Faults of every simulated device.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
@@ -84,6 +88,10 @@ struct Options
     double wait_s{10.0};
     std::int64_t rate_hz{1'000};
     double duration_s{10.0};
+    /// The run ends by its hooks or stop() alone; `duration_s` is the time of simulated operators.
+    bool runs_until_stopped{false};
+    /// The caller runs each frame by SessionRun::step(); only with `virtual_time`.
+    bool is_stepped{false};
     std::vector<std::string> report_paths;
     std::string record_path;       ///< File of the recording; empty: none.
     std::string trace_path;        ///< File of the trace; empty: none.
@@ -140,14 +148,13 @@ struct Options
     /// Factor by which a frame may do more than the usual work, from the tools' shapes.
     [[nodiscard]] std::uint32_t work_times() const noexcept
     {
-        const auto any = [this](std::string ToolChoice::*file)
-        {
-            return std::ranges::any_of(tools, [file](const ToolOptions& tool)
-                                       { return tool.shape && !((*tool.shape).*file).empty(); });
-        };
-        return any(&ToolChoice::mesh_model)  ? Budgets::kMeshWork
-               : any(&ToolChoice::hull_file) ? Budgets::kHullWork
-                                             : 1U;
+        const auto is_mesh = [](const ToolOptions& tool)
+        { return tool.shape && !tool.shape->mesh_model.empty(); };
+        const auto is_hull = [](const ToolOptions& tool)
+        { return tool.shape && (!tool.shape->hull_file.empty() || tool.shape->hull_vertices); };
+        return std::ranges::any_of(tools, is_mesh)   ? Budgets::kMeshWork
+               : std::ranges::any_of(tools, is_hull) ? Budgets::kHullWork
+                                                     : 1U;
     }
     /// Work budget of a frame.
     [[nodiscard]] std::uint32_t frame_work() const noexcept

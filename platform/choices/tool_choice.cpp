@@ -92,32 +92,7 @@ std::optional<Refusal> read_hull(ToolChoice& tool, const FileReaders& readers,
     {
         return failure(fmt::format("{}: {}", option, corners.error().text));
     }
-    // Files repeat corners; a set keeps each once.
-    std::set<std::tuple<double, double, double>> points;
-    for (const Vec3& p : corners.value())
-    {
-        points.emplace(p[0], p[1], p[2]);
-    }
-    if (points.size() > kMaxHullVertices)
-    {
-        return failure(fmt::format("{}: {}: {} corners; the hull of a tool has at most {}", option,
-                                   tool.hull_file, points.size(), kMaxHullVertices));
-    }
-    std::vector<Vec3> vertices;
-    for (const auto& [x, y, z] : points)
-    {
-        vertices.emplace_back(x, y, z);
-        if (vertices.back().norm() > kLengthMax_m)
-        {
-            return failure(fmt::format("{}: {}: corner ({:g}, {:g}, {:g}) is {:g} m from the "
-                                       "tool's origin; at most {} m",
-                                       option, tool.hull_file, x, y, z, vertices.back().norm(),
-                                       kLengthMax_m));
-        }
-    }
-    tool.hull_vertices = std::make_shared<const std::vector<Vec3>>(std::move(vertices));
-    tool.core = Hull::create(*tool.hull_vertices).value();
-    return std::nullopt;
+    return set_hull(tool, corners.value(), fmt::format("{}: {}", option, tool.hull_file));
 }
 
 std::optional<Refusal> add_model(ToolChoice& tool, Options& options, const std::string& option)
@@ -205,6 +180,36 @@ Result<ToolLoad, Refusal> parse_tool_mass(std::string_view text)
         return not_of_form(text, kMassForm.text, "X,Y,Z is more than 1 m away");
     }
     return load;
+}
+
+std::optional<Refusal> set_hull(ToolChoice& tool, std::span<const Vec3> corners,
+                                const std::string& source)
+{
+    // Files repeat corners; a set keeps each once.
+    std::set<std::tuple<double, double, double>> points;
+    for (const Vec3& p : corners)
+    {
+        points.emplace(p[0], p[1], p[2]);
+    }
+    if (points.size() > kMaxHullVertices)
+    {
+        return failure(fmt::format("{}: {} corners; the hull of a tool has at most {}", source,
+                                   points.size(), kMaxHullVertices));
+    }
+    std::vector<Vec3> vertices;
+    for (const auto& [x, y, z] : points)
+    {
+        vertices.emplace_back(x, y, z);
+        if (vertices.back().norm() > kLengthMax_m)
+        {
+            return failure(fmt::format("{}: corner ({:g}, {:g}, {:g}) is {:g} m from the tool's "
+                                       "origin; at most {} m",
+                                       source, x, y, z, vertices.back().norm(), kLengthMax_m));
+        }
+    }
+    tool.hull_vertices = std::make_shared<const std::vector<Vec3>>(std::move(vertices));
+    tool.core = Hull::create(*tool.hull_vertices).value();
+    return std::nullopt;
 }
 
 ToolChoice default_tool(double diagonal_m)

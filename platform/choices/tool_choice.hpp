@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,11 @@ struct ToolChoice
 /// Parses KG[,X,Y,Z], the payload: 0 to 5 kg, and its centre of mass in the tool's frame, in
 /// metres, within 1 m of the origin. Gravity points along -z.
 [[nodiscard]] Result<ToolLoad, Refusal> parse_tool_mass(std::string_view text);
+
+/// Sets the core of a hull's tool to the convex hull of these corners, each kept once. `source`
+/// begins the refusal of too many corners, or of one too far from the tool's origin.
+[[nodiscard]] std::optional<Refusal> set_hull(ToolChoice& tool, std::span<const Vec3> corners,
+                                              const std::string& source);
 
 /// Sphere for tools without --tool: its radius is 1 % of `diagonal_m`, clamped to the range of
 /// parse_tool().

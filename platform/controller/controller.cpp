@@ -167,6 +167,7 @@ void Controller::make_tools(const Options& options)
         const auto* mesh = std::get_if<MeshCore>(&tool.spec.core);
         tool.operator_radius_m = operator_radius_m(
             shape, mesh != nullptr ? &headers_[mesh->model.value] : nullptr, diagonal_world_m());
+        tool.external_force = asked.external_force;
         if (asked.fixture)
         {
             fixtures_.push_back(std::make_unique<VirtualFixture>(*asked.fixture));

@@ -18,6 +18,8 @@ struct RunHooks
     std::function<bool()> is_stopped; ///< Returns true if the run should end.
     /// Begins the progress display of the run `what`. The result is destroyed after the loop's end.
     std::function<FramesDone(const std::string& what)> begin_progress;
+    /// True if the run reports its state to a service manager (ServiceNotify).
+    bool notifies_manager{false};
 
     [[nodiscard]] bool goes_on() const { return !is_stopped || !is_stopped(); }
 };

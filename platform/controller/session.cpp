@@ -4,9 +4,6 @@
 
 #include "platform/choices/device_choice.hpp"
 #include "platform/controller/histogram_folder.hpp"
-#include "platform/controller/recorder.hpp"
-#include "platform/controller/session_run.hpp"
-#include "platform/controller/trace_file.hpp"
 #include "platform/devices/plugin/device_plugin.hpp"
 #include "platform/machine/posix/linux_extras.hpp"
 #include "platform/scene/scene_choice.hpp"
@@ -209,7 +206,8 @@ void tell_of_unguarded(const Options& options)
 /// Starts the guardian; null if no device needs one.
 Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options)
 {
-    if (std::ranges::none_of(options.tools, wants_guard, &ToolOptions::device))
+    if (!options.has_guardian ||
+        std::ranges::none_of(options.tools, wants_guard, &ToolOptions::device))
     {
         return std::unique_ptr<Guardian>();
     }
@@ -226,7 +224,7 @@ Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options
 
 Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options, RunHooks hooks)
 {
-    if (auto error = check_machine(options))
+    if (auto error = options.is_stepped ? std::nullopt : check_machine(options))
     {
         return *error;
     }
@@ -370,31 +368,43 @@ std::optional<Refusal> Session::assemble()
     return std::nullopt;
 }
 
+std::optional<Refusal> Session::start(ProgramScene* program, HandTap* hands)
+{
+    if (const auto error = start_recorder(options_, *controller_, recorder_))
+    {
+        return failure(*error);
+    }
+    if (const auto error = start_trace(options_, trace_))
+    {
+        return failure(*error);
+    }
+    run_ = std::make_unique<SessionRun>(RunParts{.options = options_,
+                                                 .controller = *controller_,
+                                                 .topics = topics_.get(),
+                                                 .recorder = recorder_ ? &*recorder_ : nullptr,
+                                                 .trace = trace_ ? &*trace_ : nullptr,
+                                                 .guardian = guardian_.get(),
+                                                 .hooks = hooks_,
+                                                 .program = program,
+                                                 .hands = hands});
+    return run_->start();
+}
+
+FinishedRun Session::finish()
+{
+    FinishedRun done = run_->finish();
+    run_.reset();
+    return done;
+}
+
 Result<FinishedRun, Refusal> Session::run(const std::string& what)
 {
-    std::optional<Recorder> recorder;
-    if (const auto error = start_recorder(options_, *controller_, recorder))
-    {
-        return failure(*error);
-    }
-    std::optional<TraceFile> trace;
-    if (const auto error = start_trace(options_, trace))
-    {
-        return failure(*error);
-    }
-    SessionRun run({.options = options_,
-                    .controller = *controller_,
-                    .topics = topics_.get(),
-                    .recorder = recorder ? &*recorder : nullptr,
-                    .trace = trace ? &*trace : nullptr,
-                    .guardian = guardian_.get(),
-                    .hooks = hooks_});
-    if (auto error = run.start())
+    if (auto error = start())
     {
         return *error;
     }
-    run.wait(what);
-    return run.finish();
+    run_->wait(what);
+    return finish();
 }
 
 } // namespace tactus::hrtc

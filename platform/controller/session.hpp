@@ -7,8 +7,13 @@
 #include "platform/controller/controller.hpp"
 #include "platform/controller/finished_run.hpp"
 #include "platform/controller/guardian.hpp"
+#include "platform/controller/recorder.hpp"
 #include "platform/controller/run_hooks.hpp"
 #include "platform/controller/server_topics.hpp"
+#include "platform/controller/session_run.hpp"
+#include "platform/controller/trace_file.hpp"
+#include "platform/loop/hand_tap.hpp"
+#include "platform/scene/program_scene.hpp"
 #include "platform/scene/scene_choice.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/dds/authority.hpp"
@@ -39,6 +44,16 @@ public:
     [[nodiscard]] Controller& controller() noexcept { return *controller_; }
     [[nodiscard]] const Controller& controller() const noexcept { return *controller_; }
 
+    /// Starts the loop on its real-time thread beside the supervisor, the transport and the
+    /// recorder; with Options::is_stepped without any of these threads. `program` and `hands` may
+    /// be null; they must outlive the session. Returns the reason if it can't start. Call it once.
+    [[nodiscard]] std::optional<Refusal> start(ProgramScene* program = nullptr,
+                                               HandTap* hands = nullptr);
+    /// The run after start() and before finish().
+    [[nodiscard]] SessionRun& running() noexcept { return *run_; }
+    /// Ends the run after SessionRun::wait(), or between two steps, and returns its results.
+    [[nodiscard]] FinishedRun finish();
+
     /// Runs the loop on its real-time thread beside the supervisor, the transport and the recorder,
     /// and waits for its end. The hooks may end the run early; forces fade then. `what` is the
     /// run's name for the hooks. If an assertion fails, the devices are braked and the process ends
@@ -68,6 +83,9 @@ private:
     std::vector<dds::Authority> authorities_;
     std::unique_ptr<Controller> controller_;
     std::unique_ptr<ServerTopics> topics_; ///< Null without a client.
+    std::optional<Recorder> recorder_;     ///< None without a recording.
+    std::optional<TraceFile> trace_;       ///< None without a trace.
+    std::unique_ptr<SessionRun> run_;      ///< Null before start() and after finish().
 };
 
 } // namespace tactus::hrtc

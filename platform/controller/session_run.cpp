@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -99,7 +100,7 @@ SessionRun::SessionRun(const RunParts& parts)
                parts.options.object_speed_m_per_s)
     , telemetry_(period_)
     , transport_(parts.controller.chunk_loader(), parts.controller.models(), connected_topics(),
-                 parts.trace != nullptr ? &parts.trace->tap() : nullptr)
+                 parts.trace != nullptr ? &parts.trace->tap() : nullptr, connected_program())
     , loop_(loop_parts(), done_.statistics)
     , devices_gone_(parts.controller.tools().size())
     , strangers_(parts.controller.tools().size())
@@ -145,6 +146,15 @@ ServerTopics* SessionRun::connected_topics()
     return parts_.topics;
 }
 
+ProgramScene* SessionRun::connected_program()
+{
+    if (parts_.program != nullptr)
+    {
+        parts_.program->connect(mailbox_);
+    }
+    return parts_.program;
+}
+
 /// Tap of the refinement state; null if no viewer gets it.
 RefinementStateTap* SessionRun::make_front()
 {
@@ -159,7 +169,8 @@ LoopParts SessionRun::loop_parts()
 {
     Controller& controller = parts_.controller;
     const bool has_topics = parts_.topics != nullptr;
-    if (parts_.recorder == nullptr)
+    const Options& options = parts_.options;
+    if (parts_.recorder == nullptr && !options.is_stepped)
     {
         last_inputs_.emplace(controller.tools().size());
     }
@@ -171,18 +182,29 @@ LoopParts SessionRun::loop_parts()
             .governor = governor_ ? &*governor_ : nullptr,
             .tap = parts_.recorder != nullptr ? &parts_.recorder->tap() : nullptr,
             .last_inputs = last_inputs_ ? &*last_inputs_ : nullptr,
-            .frames = parts_.options.frames(),
+            .frames = options.runs_until_stopped ? std::numeric_limits<std::uint64_t>::max()
+                                                 : options.frames(),
             .is_virtual = time_.is_virtual(),
             .servers_gone = &transport_.servers_gone(),
             .starved = &transport_.starved(),
-            .scene_mailbox = has_topics ? &mailbox_ : nullptr,
+            .scene_mailbox = has_topics || parts_.program != nullptr ? &mailbox_ : nullptr,
             .telemetry = has_topics ? &telemetry_ : nullptr,
             .front = front_ ? &*front_ : nullptr,
-            .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr};
+            .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr,
+            .hands = parts_.hands};
 }
 
 std::optional<Refusal> SessionRun::start()
 {
+    if (parts_.options.is_stepped)
+    {
+        if (const auto started = time_.timer().start(period_, Duration{}); !started)
+        {
+            return started.error();
+        }
+        loop_.begin();
+        return std::nullopt;
+    }
     brake_.emplace(loop_);
     if (!time_.is_virtual())
     {
@@ -198,6 +220,15 @@ std::optional<Refusal> SessionRun::start()
     }
     haptic_thread_ = std::move(haptic).value();
     return std::nullopt;
+}
+
+void SessionRun::step(std::uint32_t periods)
+{
+    for (std::uint32_t i = 1; i < periods; ++i)
+    {
+        loop_.skip_period();
+    }
+    loop_.step();
 }
 
 std::optional<Refusal> SessionRun::start_supervisor()
@@ -259,8 +290,11 @@ void SessionRun::watch(const std::string& what)
 {
     const RunHooks& hooks = parts_.hooks;
     const FramesDone progress = hooks.begin_progress ? hooks.begin_progress(what) : FramesDone();
-    ServiceNotify manager;
-    manager.ready();
+    std::optional<ServiceNotify> manager;
+    if (hooks.notifies_manager)
+    {
+        manager.emplace().ready();
+    }
     std::uint64_t seen = 0;
     while (!loop_.is_done() && !loop_.has_failed())
     {
@@ -269,9 +303,9 @@ void SessionRun::watch(const std::string& what)
             loop_.stop();
         }
         const std::uint64_t done = loop_.frames_done();
-        if (done > seen)
+        if (done > seen && manager)
         {
-            manager.alive(PosixClock().now());
+            manager->alive(PosixClock().now());
         }
         seen = done;
         if (progress)
@@ -286,7 +320,10 @@ void SessionRun::watch(const std::string& what)
         }
         std::this_thread::sleep_for(kLook);
     }
-    manager.stopping();
+    if (manager)
+    {
+        manager->stopping();
+    }
 }
 
 /// Adds the new events of the loop and the supervisor to the safety record, and logs them.
@@ -299,6 +336,10 @@ void SessionRun::take_events()
     {
         done_.safety.add(event);
         tell_of_device(event);
+    }
+    if (parts_.hands != nullptr)
+    {
+        parts_.hands->note_brakes(supervisor_.brakes());
     }
     tell_of_first_places();
 }
@@ -348,6 +389,10 @@ void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
             if (inside.holds(to_model(pose, places_m[tool])))
             {
                 done_.begins_inside[tool] = model.name;
+                if (parts_.hands != nullptr)
+                {
+                    parts_.hands->note_begins_inside(tool);
+                }
                 if (parts_.topics != nullptr)
                 {
                     parts_.topics->tell_begins_inside(tool);
@@ -473,7 +518,14 @@ std::string SessionRun::keep_failed_frame()
 
 FinishedRun SessionRun::finish()
 {
-    haptic_thread_->join();
+    if (haptic_thread_)
+    {
+        haptic_thread_->join();
+    }
+    else
+    {
+        loop_.rest();
+    }
     done_.statistics.deadlines.compare_work();
     brake_.reset();
     supervisor_.stop();
@@ -487,7 +539,7 @@ FinishedRun SessionRun::finish()
     transport_thread_.reset();
     finish_recording();
     finish_trace();
-    done_.thread = haptic_thread_->report();
+    done_.thread = haptic_thread_ ? haptic_thread_->report() : RtThreadReport{};
     done_.supervisor_fifo = is_supervised && supervisor_thread_->report().fifo;
     done_.timer = time_.timer().counts();
     done_.server_was_lost = transport_.server_was_lost();

@@ -22,6 +22,7 @@
 #include "platform/loop/telemetry_tap.hpp"
 #include "platform/machine/posix/posix_periodic_timer.hpp"
 #include "platform/machine/rt_thread.hpp"
+#include "platform/scene/program_scene.hpp"
 #include "transport/log.hpp"
 
 #include <cstdint>
@@ -42,6 +43,8 @@ struct RunParts
     TraceFile* trace{nullptr};     ///< Null without --trace.
     Guardian* guardian{nullptr};   ///< Null if no device needs a guardian.
     RunHooks hooks{};
+    ProgramScene* program{nullptr}; ///< Null unless a program changes the scene.
+    HandTap* hands{nullptr};        ///< Null unless a program looks at its hands.
 };
 
 /// One run of the loop on its real-time thread, with supervisor and transport on threads of their
@@ -56,19 +59,27 @@ public:
     SessionRun& operator=(const SessionRun&) = delete;
     ~SessionRun();
 
-    /// Starts supervisor and loop. Returns the reason if a thread can't start; the loop doesn't run
-    /// then.
+    /// Starts supervisor and loop; with Options::is_stepped, no thread. Returns the reason if a
+    /// thread can't start; the loop doesn't run then.
     [[nodiscard]] std::optional<Refusal> start();
+
+    /// Runs the next frame, `periods` periods after the last one; only with Options::is_stepped.
+    void step(std::uint32_t periods);
 
     /// Waits for the loop's end and reports its progress to the hooks, which may end the loop
     /// early. `what`: the run's name for the hooks. After a failed assertion this does not return.
     void wait(const std::string& what);
 
+    /// Ends the loop early, once the forces have faded. Any thread.
+    void stop() noexcept { loop_.stop(); }
+    /// Time of the loop's clock; with Options::is_stepped between frames.
+    [[nodiscard]] MonotonicTime now() const noexcept { return time_.clock().now(); }
     /// Waits for the loop, ends all other threads and returns the results.
     [[nodiscard]] FinishedRun finish();
 
 private:
     [[nodiscard]] ServerTopics* connected_topics();
+    [[nodiscard]] ProgramScene* connected_program();
     [[nodiscard]] RefinementStateTap* make_front();
     [[nodiscard]] LoopParts loop_parts();
     [[nodiscard]] std::optional<Refusal> start_supervisor();

@@ -18,6 +18,10 @@ void TransportRounds::run(MonotonicTime now)
     {
         topics_->step(now);
     }
+    if (program_ != nullptr)
+    {
+        program_->step(now);
+    }
 }
 
 void TransportRounds::run_chunk_loader(MonotonicTime now)

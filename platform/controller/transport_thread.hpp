@@ -6,6 +6,7 @@
 #include "platform/loop/model_marks.hpp"
 #include "platform/loop/trace_tap.hpp"
 #include "platform/machine/time.hpp"
+#include "platform/scene/program_scene.hpp"
 #include "transport/chunk_loader.hpp"
 #include "transport/served_model.hpp"
 
@@ -24,10 +25,16 @@ class TransportRounds
 public:
     /// Chunk loader and models must outlive the rounds. During run(), no other thread may touch
     /// them or the models' links. `topics` steps in each round, after the chunk loader. `trace`
-    /// takes the times of the rounds with requests or pieces. Both may be null.
+    /// takes the times of the rounds with requests or pieces. `program` passes on the program's
+    /// changes of the scene. All three may be null.
     TransportRounds(ChunkLoader& chunk_loader, const std::vector<ServedModel>& models,
-                    ServerTopics* topics, TraceTap* trace = nullptr) noexcept
-        : chunk_loader_(chunk_loader), models_(models), topics_(topics), trace_(trace)
+                    ServerTopics* topics, TraceTap* trace = nullptr,
+                    ProgramScene* program = nullptr) noexcept
+        : chunk_loader_(chunk_loader)
+        , models_(models)
+        , topics_(topics)
+        , trace_(trace)
+        , program_(program)
     {
     }
 
@@ -49,6 +56,7 @@ private:
     const std::vector<ServedModel>& models_;
     ServerTopics* topics_;
     TraceTap* trace_;
+    ProgramScene* program_;
     TracedRound told_; ///< Sums of all rounds up to the last traced one.
     std::atomic<bool> server_was_lost_{false};
     ModelMarks servers_gone_;

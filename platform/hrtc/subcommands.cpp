@@ -5,7 +5,7 @@
 #include "platform/diagnose/deadline_test_command.hpp"
 #include "platform/diagnose/doctor_command.hpp"
 #include "platform/diagnose/load.hpp"
-#include "platform/hrtc/file_readers.hpp"
+#include "platform/readers/file_readers.hpp"
 
 #include <fmt/format.h>
 

@@ -9,6 +9,7 @@
 #include "rt_core/limits.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::hrtc
 {
@@ -32,18 +33,40 @@ HapticLoop::HapticLoop(const LoopParts& parts, RunStatistics& statistics)
 
 void HapticLoop::run() noexcept
 {
+    begin();
+    while (!has_to_end())
+    {
+        step();
+    }
+    rest();
+}
+
+void HapticLoop::begin() noexcept
+{
     allocation_counter::mark_this_thread(true);
     haptic_thread_.store(std::this_thread::get_id());
     fade_frames_ = static_cast<std::uint64_t>(kFadeTime_s / to_seconds(parts_.timer->period())) + 1;
     usage_ = thread_usage();
     allocations_ = allocation_counter::of_this_thread().allocations;
     last_end_ = parts_.clock->now();
-    for (; !has_to_end(); ++frame_)
-    {
-        wait_for_deadline();
-        run_period();
-        frames_done_.store(frame_ + 1, std::memory_order_relaxed);
-    }
+}
+
+void HapticLoop::step() noexcept
+{
+    wait_for_deadline();
+    run_period();
+    ++frame_;
+    frames_done_.store(frame_, std::memory_order_relaxed);
+}
+
+void HapticLoop::skip_period() noexcept
+{
+    parts_.timer->sleep_until_margin();
+    skipped_periods_ += parts_.timer->spin_until_deadline().periods;
+}
+
+void HapticLoop::rest() noexcept
+{
     heartbeat_.rest();
     for (ToolPort& port : ports_)
     {
@@ -123,10 +146,14 @@ void HapticLoop::wait_for_deadline() noexcept
     parts_.timer->sleep_until_margin();
     const ThreadUsage awake = thread_usage();
     const MonotonicTime awake_at = parts_.clock->now();
-    warm_caches();
+    if (!parts_.is_virtual) // There is no wait in which caches could grow cold.
+    {
+        warm_caches();
+    }
     measures_.beside += parts_.clock->now() - awake_at;
     const ThreadUsage ready = thread_usage();
     measures_.cycle = parts_.timer->spin_until_deadline();
+    measures_.cycle.periods += std::exchange(skipped_periods_, 0);
     measures_.beside_cpu = asleep.cpu_time - usage_.cpu_time + (ready.cpu_time - awake.cpu_time);
     timer_switches_ = awake.voluntary_switches - asleep.voluntary_switches;
     if (measures_.cycle.periods > 1) // The timer sleeps once more only after a stall.
@@ -308,6 +335,18 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
     {
         parts_.front->show({frame_, start, *parts_.frame, output, forces_, measures_.budgets},
                            statistics_);
+    }
+    if (parts_.hands != nullptr)
+    {
+        const DeadlineAccount& deadlines = statistics_.deadlines;
+        parts_.hands->show(
+            {frame_,
+             states_,
+             devices_,
+             forces_,
+             radii_m_,
+             output,
+             {frame_ + 1, deadlines.missed, deadlines.overruns, deadlines.latency_misses}});
     }
 }
 

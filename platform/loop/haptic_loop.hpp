@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/loop/budget_governor.hpp"
+#include "platform/loop/hand_tap.hpp"
 #include "platform/loop/model_marks.hpp"
 #include "platform/loop/refinement_state_tap.hpp"
 #include "platform/loop/run_statistics.hpp"
@@ -51,6 +52,7 @@ struct LoopParts
     TelemetryTap* telemetry{nullptr};        ///< Shows every frame; may be null.
     RefinementStateTap* front{nullptr};      ///< Shows the refinement state; may be null.
     TraceTap* trace{nullptr};                ///< Traces every frame's times; may be null.
+    HandTap* hands{nullptr};                 ///< Shows the program its hands; may be null.
 };
 
 /// Work of the haptic thread. Every period it reads the devices, runs the frame, makes its forces
@@ -68,6 +70,16 @@ public:
     /// Runs until all frames are done or stop() was called. The timer must have been started.
     /// Allocates nothing.
     void run() noexcept;
+
+    /// The parts of run(), for a caller that decides when a frame runs: begin() once, then step()
+    /// for each frame, and rest() once at the end. One thread; the timer must have been started.
+    void begin() noexcept;
+    /// Waits for the next deadline and runs one frame.
+    void step() noexcept;
+    /// Waits for the next deadline without a frame. The next frame counts the period as missed.
+    void skip_period() noexcept;
+    /// Sends zero forces. No frame may follow.
+    void rest() noexcept;
 
     /// Any thread: ends the loop once the forces have faded.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
@@ -144,8 +156,9 @@ private:
     bool is_recorded_{true};        ///< False from the start of a frame until it is recorded.
     bool has_failed_itself_{false}; ///< Set before failed_.
     std::uint64_t frame_{0};
-    std::uint64_t fade_frames_{0}; ///< Length of a fade (kFadeTime_s) in frames.
-    std::uint64_t end_;            ///< Number of frames of the run; stop() lowers it.
+    std::uint32_t skipped_periods_{0}; ///< Periods of skip_period() since the last frame.
+    std::uint64_t fade_frames_{0};     ///< Length of a fade (kFadeTime_s) in frames.
+    std::uint64_t end_;                ///< Number of frames of the run; stop() lowers it.
     std::atomic<std::thread::id> haptic_thread_{};
     Heartbeat heartbeat_;
     SafetyLog log_;

@@ -2,11 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/options/option_table.hpp"
 
-#include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/choices/option_ranges.hpp"
 #include "platform/options/tool_options.hpp"
 #include "platform/program/command_line.hpp"
 #include "rt_core/limits.hpp"
-#include "transport/material_ranges.hpp"
 
 #include <array>
 #include <utility>
@@ -16,10 +15,6 @@ namespace tactus::hrtc
 
 namespace
 {
-
-constexpr double kLargestPool_mib = 4'096.0;
-constexpr double kFrameBudgetMin_us = 1e-3 * WorkBudget::kLeast;
-constexpr double kFrameBudgetMax_us = 10'000.0;
 
 /// Declares the options of the objects.
 void declare_scene(CommandLine& line, Options& options, RawOptions& raw)
@@ -92,10 +87,10 @@ void declare_run(CommandLine& line, Options& options, const CommandForm& form)
 {
     line.begin_task("The run", "hrtc ball.spm --duration 5 --report run.html --report run.json");
     line.add_option("--rate", options.rate_hz, "Rate of the haptic loop, in frames a second")
-        .integer_between(SimulatedDeviceOptions::kRateMinHz, SimulatedDeviceOptions::kRateMaxHz)
+        .integer_between(kRateRange_hz.low, kRateRange_hz.high)
         .show_default();
     line.add_option("--duration", options.duration_s, "Duration of the run, in seconds")
-        .number_between(0.1, 86'400.0)
+        .number_between(kDurationRange_s.low, kDurationRange_s.high)
         .show_default();
     line.add_flag("--strict", options.strict,
                   "Exit with code 1 if the verdict reports a loss: a lost server or device, a "
@@ -124,23 +119,23 @@ void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option(
             "--pool-mib", options.pool_mib,
             "Maximum memory for the pools, tables and queues of all models together, in MiB")
-        .number_between(0.25, kLargestPool_mib)
+        .number_between(kPoolRange_mib.low, kPoolRange_mib.high)
         .show_default();
     line.add_option(
             "--cache-mib", options.cache_mib,
             "Part of --pool-mib for pages of records, in MiB [default: about half of --pool-mib]")
-        .number_between(0.05, kLargestPool_mib);
+        .number_between(kCacheRange_mib.low, kCacheRange_mib.high);
     line.add_option("--splits", options.splits,
                     "Maximum number of splits, and of merges, in a frame. With --frame-budget-us "
                     "the default is the largest value")
-        .integer_between(std::uint32_t{1}, kMaxSplitsPerFrame)
+        .integer_between(kSplitsRange.low, kSplitsRange.high)
         .show_default();
     line.add_option(
             "--frame-budget-us", options.frame_budget_us,
             "Time budget of a frame, in microseconds. The work of a frame adapts to the measured "
             "times of frames. The limit of the work is 1 instruction for each nanosecond, 2 with a "
             "hull tool, 8 with a mesh tool [default: half of the period]")
-        .number_between(kFrameBudgetMin_us, kFrameBudgetMax_us);
+        .number_between(kFrameBudgetRange_us.low, kFrameBudgetRange_us.high);
     line.add_flag("--no-static", raw.refines_always,
                   "Refine a model locally even if the whole model fits the pools");
     line.add_option("--predict", raw.prediction,
@@ -158,49 +153,50 @@ void declare_force(CommandLine& line, Options& options)
     line.begin_task("Forces and speed limits", "hrtc ball.spm --stiffness 1000");
     line.add_option("--stiffness", options.stiffness_n_per_m,
                     "Stiffness of the virtual wall, in N/m")
-        .number_between(1.0, kStiffest_n_per_m)
+        .number_between(kStiffnessRange_n_per_m.low, kStiffnessRange_n_per_m.high)
         .show_default();
     line.add_option("--angular-stiffness", options.angular_stiffness_nm_per_rad,
                     "Stiffness of the rotational spring of tools other than points and spheres, in "
                     "N m/rad. The device's own limit applies as well [default: --stiffness times "
                     "the square of the tool's size]")
-        .number_between(kSoftest_nm_per_rad, kStiffest_nm_per_rad);
+        .number_between(kAngularStiffnessRange_nm_per_rad.low,
+                        kAngularStiffnessRange_nm_per_rad.high);
     line.add_option(
             "--force-shading", options.shading_m,
             "Width of force shading, in metres. Points and spheres feel the facets within the "
             "width as one smooth surface, at most an eighth of the width away from the mesh. Edges "
             "of more than 25 degrees stay sharp [default: no shading, each facet is felt]")
-        .number_between(kShadingWidthMin_m, kShadingWidthMax_m);
+        .number_between(kShadingRange_m.low, kShadingRange_m.high);
     line.add_option("--force-tolerance", options.force_tolerance_n,
                     "Largest change of a force by coarser levels that count as the surface, in "
                     "newtons; larger where the pools have no room for finer levels. With 0, only "
                     "exact faces count")
-        .number_between(0.0, kForceToleranceMax_n)
+        .number_between(kForceToleranceRange_n.low, kForceToleranceRange_n.high)
         .show_default();
     line.add_option("--slew", options.slew_share_per_ms,
                     "Maximum change of a force in a millisecond beyond the effect of hand and "
                     "objects, as a share of the device's largest force")
-        .number_between(kSlewShareMin_per_ms, 1.0)
+        .number_between(kSlewRange_per_ms.low, kSlewRange_per_ms.high)
         .show_default();
     line.add_option("--clutch", options.clutch_button,
                     "Clutch button of each device, counted from 0. While the button is held, the "
                     "hand moves freely and the tool stays in place without a force [default: none]")
-        .integer_between(0U, kButtons - 1U);
+        .integer_between(kClutchRange.low, kClutchRange.high);
     line.add_option("--speed-limit", options.speed_limit_m_per_s,
                     "Speed of the hand above which its force fades, in m/s [default: the device's "
                     "own limit]")
-        .number_between(0.01, 100.0);
+        .number_between(kSpeedLimitRange_m_per_s.low, kSpeedLimitRange_m_per_s.high);
     line.add_option("--object-speed", options.object_speed_m_per_s,
                     "Object speed limit, in m/s, for objects that a tool touches or may touch "
                     "within 20 ms. If a server moves an object faster, the object follows at the "
                     "limit, and the force fades while the object is far behind")
-        .number_between(0.001, 100.0)
+        .number_between(kObjectSpeedRange_m_per_s.low, kObjectSpeedRange_m_per_s.high)
         .show_default();
     line.add_option("--proxy-speed", options.proxy_speed_m_per_s,
                     "Proxy speed limit, in m/s: the speed at which a tool in contact follows a "
                     "faster hand. The reach of the tool grows with the limit [default: a diagonal "
                     "of the first model a second]")
-        .number_between(0.001, 100.0);
+        .number_between(kProxySpeedRange_m_per_s.low, kProxySpeedRange_m_per_s.high);
 }
 
 void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
@@ -213,7 +209,7 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option("--domain", options.domain,
                     "DDS domain. With models from files, the option makes the run visible to "
                     "viewers (spm_view) in that domain")
-        .integer_between(0, 232)
+        .integer_between(kDomainRange.low, kDomainRange.high)
         .show_default();
     line.add_option("--name", options.name,
                     "Name of the controller with DDS (1 to 63 bytes of letters, digits, . _ -). "
@@ -233,7 +229,7 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option(
             "--wait", options.wait_s,
             "Maximum wait for a model to be published and for a device to connect, in seconds")
-        .number_between(0.1, 3'600.0)
+        .number_between(kWaitRange_s.low, kWaitRange_s.high)
         .show_default();
 }
 
@@ -247,10 +243,10 @@ void declare_thread(CommandLine& line, Options& options, RawOptions& raw)
     line.add_option("--supervisor-periods", options.supervisor_periods,
                     "Number of periods without a heartbeat of the haptic loop until the supervisor "
                     "brakes the devices [default: 3 on a PREEMPT_RT kernel, 10 elsewhere]")
-        .integer_between(2U, 1'000U);
+        .integer_between(kSupervisorRange.low, kSupervisorRange.high);
     line.add_option("--cpu", raw.cpu,
                     "Processor of the haptic thread [default: left to the system]")
-        .integer_between(0, 1'023);
+        .integer_between(kCpuRange.low, kCpuRange.high);
     line.add_flag("--allow-no-rt", options.thread.allow_no_rt,
                   "Run without SCHED_FIFO or locked memory if the system refuses them");
     line.add_flag("--trap-system-calls", options.trap_system_calls,

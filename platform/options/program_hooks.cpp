@@ -18,7 +18,8 @@ RunHooks program_hooks()
                 auto progress = std::make_shared<Progress>("hrtc", what, "frames");
                 return [progress](std::uint64_t done, std::uint64_t all)
                 { progress->update(done, all); };
-            }};
+            },
+            .notifies_manager = true};
 }
 
 } // namespace tactus::hrtc

@@ -2,10 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/options/tool_options.hpp"
 
-#include "platform/options/device_limits_text.hpp"
+#include "platform/choices/tool_words.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/counted.hpp"
-#include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
 
@@ -19,109 +18,45 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Sets `value` to the value of `parsed` and returns an empty text, or returns the text of its
-/// refusal.
-template <typename Value, typename Parsed>
-std::string set_to(Value& value, Parsed parsed)
-{
-    if (!parsed)
-    {
-        return parsed.error().text;
-    }
-    value = std::move(parsed).value();
-    return {};
-}
-
-std::string set_shape(const std::string& text, ToolOptions& tool)
-{
-    return set_to(tool.shape, parse_tool(text));
-}
-
-std::string set_mass(const std::string& text, ToolOptions& tool)
-{
-    return set_to(tool.load, parse_tool_mass(text));
-}
-
-std::string set_fixture(const std::string& text, ToolOptions& tool)
-{
-    return set_to(tool.fixture, parse_fixture(text));
-}
-
-std::string set_device(const std::string& text, ToolOptions& tool)
-{
-    return set_to(tool.device, parse_device(text));
-}
-
-std::string set_limits(const std::string& text, ToolOptions& tool)
-{
-    const DeviceKind kind = tool.device.kind;
-    return kind == DeviceKind::simulated || kind == DeviceKind::dhd
-               ? set_device_limits(text, tool.device.limits)
-               : fmt::format("'{}': its device tells its own; sim and dhd take some",
-                             printable(text));
-}
-
-std::string set_frame(const std::string& text, ToolOptions& tool)
-{
-    std::string fault = set_to(tool.device.frame, parse_placement(text));
-    const DeviceKind kind = tool.device.kind;
-    return fault.empty() && (kind == DeviceKind::simulated || kind == DeviceKind::replay)
-               ? "a simulated or recorded hand is in the world already"
-               : fault;
-}
-
-std::string set_motion(const std::string& text, ToolOptions& tool)
-{
-    const std::size_t colon = std::min(text.find(':'), text.size());
-    const std::optional<MotionKind> motion = motion_named(text.substr(0, colon));
-    if (!motion || colon + 1 == text.size())
-    {
-        return fmt::format("'{}' is not {}, perhaps with :OBJECT behind it", printable(text),
-                           kMotionNames);
-    }
-    tool.simulated = {*motion, colon < text.size() ? text.substr(colon + 1) : std::string()};
-    return tool.device.kind == DeviceKind::simulated ? "" : "its device is not a simulated one";
-}
-
 constexpr ToolOption kOptions[kToolOptions] = {
     {"shape", "--tool",
      "Shape of the tool, in metres: point; sphere:R; capsule:R,L, an axis of length L along z; "
      "box:X,Y,Z[,R]; hull:FILE[,R], the convex hull of a mesh file's vertices; "
      "mesh:NAME[@HASH][,R], a model (with --transport file, its path). R is a radius added all "
      "round [default: a sphere with a radius of 1 % of the first model's diagonal]",
-     set_shape},
+     set_tool_shape},
     {"mass", "--tool-mass",
      "Payload of the device for gravity compensation: KG, 0 to 5 [,X,Y,Z of the payload's centre "
      "in the tool's frame, in m, within 1 m]. Down is -z of the device [default: 0]",
-     set_mass},
+     set_tool_mass},
     {"fixture", "--fixture",
      "Virtual fixture, a spring that guides the tool, in world coordinates and m: point:X,Y,Z "
      "pulls the tool to the point; line:X,Y,Z,DX,DY,DZ pulls the tool to the line through X,Y,Z "
      "along D; plane:X,Y,Z,NX,NY,NZ pushes the tool back to the side to which N points; gripper:X "
      "holds the device's gripper open by X, 0 to 1. Each form takes [,STIFFNESS in N/m, 1 to 3000 "
      "[,maximum FORCE in N, 0.01 to 100]], otherwise 100 N/m and 1 N [default: none]",
-     set_fixture},
+     set_tool_fixture},
     {"device", "--device",
      "Device that moves the tool: sim[:CLASS], a simulated operator on a device of the class "
      "touch, omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of "
      "Force Dimension; replay:FILE, the device of a recording; plugin:FILE[,WORDS], a library of "
      "your own [default: sim]",
-     set_device},
+     set_tool_device},
     {"device-limits", "--device-limits",
      "Properties of a sim or dhd device, which does not report them: KEY=VALUE with commas "
      "between, such as mass_kg=0.2,damping_n_s_per_m=1.5. Stability depends on these properties; "
      "measure them [default: those of the class; for dhd, values that are safe for most devices]",
-     set_limits},
+     set_tool_limits},
     {"device-frame", "--device-frame",
      "Pose in the world of the coordinates of a udp, dhd or plugin device, in the form of --place; "
      "SCALE is the scale of the device's motion [default: world coordinates]",
-     set_frame},
+     set_tool_frame},
     {"motion", "--motion",
      "Motion of a simulated operator: script, free, approach, slide, tap, teleport, spin, tremor, "
      "turn, edge or peg. With :OBJECT behind the motion, the operator touches the scene's object "
      "with this name, or the first object that shows the model with this name [default: script, "
      "each operator on another object]",
-     set_motion},
+     set_tool_motion},
 };
 
 /// Text given for an option of one tool, and where.

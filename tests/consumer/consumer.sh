@@ -71,6 +71,12 @@ try() { # try NAME COMPILER FLAGS STATIC: builds it; the model and all answers a
     "$1/examples/distances" ring.spm <points.txt >"$1.txt" || fail "$1: distances: $(<"$1.txt")"
     [[ -e distances.txt ]] || cp "$1.txt" distances.txt
     cmp distances.txt "$1.txt" || fail "$1: other distances"
+    "$1/examples/hello" ring.spm >"$1.txt" || fail "$1: hello ends with $?"
+    [[ -e hello.txt ]] || cp "$1.txt" hello.txt
+    cmp hello.txt "$1.txt" || fail "$1: hello feels something else"
+    "$1/examples/hello_c" ring.spm | cmp - hello.txt || fail "$1: hello in C feels something else"
+    "$1/world" ring.spm >"$1.txt" || fail "$1: world ends with $?"
+    "$1/examples/guarded" ring.spm >"$1.txt" || fail "$1: guarded ends with $?: $(<"$1.txt")"
 }
 touches() { # touches PROGRAM: prints the same as the others, and its recording replays.
     "$1" ring.spm run.rec >said.txt || fail "$1 ends with $?: $(<said.txt)"
@@ -239,7 +245,7 @@ if [[ "$extent" == quick ]]; then
     [[ -x part/bin/spm_build && ! -e part/bin/hrtc ]] || fail 'one component is another'
     ./shared/touch nobody.spm run.rec 2>refused.log && fail "a missing file is not refused"
     grep -qF 'touch: nobody.spm: ' refused.log || fail "a missing file: $(<refused.log)"
-    refuses "the component 'gui' is not installed; there are: core, transport, platform, host, c" \
+    refuses "'gui' is not installed; there are: core, transport, platform, host, c, tactus" \
         cmake -DCMAKE_PREFIX_PATH="$prefix" -DPART=gui -P "$here/find_part.cmake"
     exit
 fi
@@ -272,11 +278,11 @@ by_pkg_config() { # by_pkg_config NAME OPTION...
     touches "./$1"
 }
 by_pkg_config pc-shared
-rm "$library"/libtactus_*.so*
+rm "$library"/libtactus*.so*
 by_pkg_config pc-static --static
 # Missing component, and another version.
 rm "$library"/cmake/Tactus/Tactus-host-*.cmake
-refuses "the component 'host' is not installed; there are: core, transport, platform, c" \
+refuses "the component 'host' is not installed; there are: core, transport, platform, c, tactus" \
     configure without_host "$compiler"
 refuses 'version: 0.2.0' \
     cmake -DCMAKE_PREFIX_PATH="$prefix" -DVERSION=0.3 -P "$here/find_part.cmake"

@@ -76,8 +76,10 @@ holds() {
 }
 libraries=usr/lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)
 readonly libraries
-holds libtactus0 "$libraries"/libtactus_{core,transport,platform,host,c}.so.0
+holds libtactus0 "$libraries"/libtactus_{core,transport,platform,host,c}.so.0 \
+    "$libraries"/libtactus.so.0
 holds libtactus-dev "$libraries"/libtactus_{core,transport,platform,host,c}.{a,so} \
+    "$libraries"/libtactus.{a,so} "$libraries"/pkgconfig/tactus.pc usr/include/tactus/world.hpp \
     "$libraries"/pkgconfig/tactus-{core,transport,platform,host,c}.pc \
     "$libraries/cmake/Tactus/TactusConfig.cmake" usr/include/tactus/tactus.h \
     usr/include/tactus/rt_core/frame/frame.hpp usr/share/man/man3/tactus.h.3.gz

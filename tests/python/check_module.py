@@ -460,13 +460,21 @@ def check_documentation(scratch):
         stub = ast.parse(file.read())
     classes = {each.name: each for each in stub.body if isinstance(each, ast.ClassDef)}
     names = {each.target.id for each in stub.body if isinstance(each, ast.AnnAssign)} | set(classes)
+    functions = {each.name: each for each in stub.body if isinstance(each, ast.FunctionDef)}
+    names |= set(functions)
     shown = {name for name in dir(tactus) if not name.startswith("_")} | {"__version__"}
-    expect(names - {"FrameState"} == shown, f"the stub's names differ: {names ^ shown}")
+    records = {"FrameState", "WorldCounts"}
+    expect(names - records == shown, f"the stub's names differ: {names ^ shown}")
+    for name, node in functions.items():
+        signature = getattr(tactus, name).__doc__.splitlines()[0]
+        expect(arguments_of(node) == arguments_in(signature), f"{name} is not {signature}")
+    fields = {each.target.id for each in classes["WorldCounts"].body}
+    expect(fields == set(tactus.World().counts()), "the stub's WorldCounts differs")
     fields = {each.target.id for each in classes["FrameState"].body}
     frame = tactus.Frame([tactus.Model("torus.spm")], [tactus.Tool(0.01)], [tactus.Object()])
     expect(fields == set(frame.state()), "the stub's FrameState differs")
     for name, told in classes.items():
-        if name in ("Error", "FrameState"):
+        if name in records | {"Error"}:
             continue
         kind = getattr(tactus, name)
         methods = {each.name: each for each in told.body}
@@ -477,6 +485,34 @@ def check_documentation(scratch):
                 signature = getattr(kind, method).__doc__.splitlines()[0]
                 expect(arguments_of(node) == arguments_in(signature),
                        f"{name}.{method}: {arguments_of(node)} is not {signature}")
+
+
+def check_worlds(scratch):
+    """A World's refusals, and a mesh in memory that feels as its file does."""
+    os.chdir(scratch)
+    path = np.linspace([0.05, 0, 0.0315], [0.05, 0, 0.0215], 500)
+    refuses(tactus.Error, "nowhere.spm: ", lambda: tactus.touch("nowhere.spm", path))
+    refuses(ValueError, "positions_m: shape (3,); (3, 3) is needed",
+            lambda: tactus.touch("torus.spm", path[0]))
+    refuses(ValueError, "vertices: shape (2,)", lambda: tactus.touch(([0, 1], [[0, 1, 2]]), path))
+    refuses(tactus.Error, "tool: 'ball:1'", lambda: tactus.World().hand("ball:1"))
+    refuses(tactus.Error, "the World has no hand", lambda: tactus.World().start())
+    world = tactus.World(objects_max=1)
+    part = world.add("torus.spm")
+    hand = world.hand()
+    refuses(ValueError, "rotation: shape (2, 2)",
+            lambda: hand.step(path[0], rotation=np.zeros((2, 2))))
+    refuses(ValueError, "rotation: not a rotation", lambda: hand.step(path[0], np.zeros((3, 3))))
+    refuses(tactus.Error, "position_m: ", lambda: hand.step([float("nan"), 0, 0]))
+    felt = hand.path(path)
+    expect(felt.force_n.shape == (500, 3) and felt.in_contact[-1], "a path does not touch")
+    expect(np.array_equal(tactus.touch("torus.spm", path).force_n, felt.force_n),
+           "touch() feels something else")
+    expect(hand.state().force_n == list(felt.force_n[-1]), "the state is another")
+    part.remove()
+    refuses(tactus.Error, "was removed before", part.remove)
+    world.stop()
+    refuses(tactus.Error, "the World has ended", lambda: hand.step(path[0]))
 
 
 def check_page(scratch):
@@ -520,6 +556,7 @@ def main():
         check_carried(path, corners)
         check_server(path)
         check_begins_inside(path)
+        check_worlds(scratch)
         check_refusals(path)
         check_documentation(scratch)
         check_page(scratch)

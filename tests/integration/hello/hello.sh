@@ -1,32 +1,36 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# hello.sh HELLO SPM_BUILD PAGE: PAGE's lines for a shell touch a model with the stated output, and
-# it shows the program's source.
+# hello.sh HELLO GUARDED SPM_BUILD EXAMPLES PAGE: PAGE shows the two programs of EXAMPLES, its lines
+# for a shell touch a model with the stated output, and both refuse a missing model in one line.
 set -euo pipefail
-readonly hello=$1 build=$2 page=$3
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+readonly hello=$1 guarded=$2 build=$3 examples=$4 page=$5
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
 fail() { printf 'FAULT: %s\n' "$*"; exit 1; }
 
-# Single C++ block of the page.
+# C++ blocks of the page, in order; the licence is not shown.
 # shellcheck disable=SC2016 # Backquotes as they stand in the page.
-sed -n '/^```cpp$/,/^```$/p' "$page" | sed '1d;$d' >shown.cpp
-diff "$here/hello.cpp" shown.cpp || fail "$page shows another program than hello.cpp"
+sed -n '/^```cpp$/,/^```$/{/^```/d;p}' "$page" >shown.cpp
+sed -s 1,2d "$examples/hello.cpp" "$examples/guarded.cpp" >there.cpp
+diff there.cpp shown.cpp || fail "$page shows other programs than the examples"
 
 # Lines of the page, with the build folder at their path.
 mkdir -p build/release/{bin,tests}
 ln -s "$build" build/release/bin/spm_build
 ln -s "$hello" build/release/tests/hello
+ln -s "$guarded" build/release/tests/guarded
 # shellcheck disable=SC2016 # Backquotes as they stand in the page.
-sed -n '/^```sh$/,/^```$/p' "$page" | sed '1d;$d' >shown.sh
+sed -n '/^```sh$/,/^```$/{/^```/d;p}' "$page" >shown.sh
 said=$(bash -eu shown.sh 2>log.txt) || fail "the page's lines end with $?: $said $(<log.txt)"
-said=$(tail -n 1 <<<"$said") # The earlier lines are spm_build's.
-grep -qxF "$said" "$page" || fail "hello says '$said', the page something else"
+force=$(grep '^force ' <<<"$said") || fail "hello says nothing: $said"
+grep -qxF "$force" "$page" || fail "hello says '$force', the page something else"
+[[ $(grep -cE '^ *-?[0-9]+\.[0-9]{3} N ' <<<"$said") -ge 10 ]] || fail "guarded says: $said"
 
-code=0
-"$hello" other.spm >out.txt 2>said.txt || code=$?
-[[ $code == 2 && ! -s out.txt && $(<said.txt) == 'hello: other.spm: '* ]] \
-    || fail "a missing file: exit $code, $(<said.txt)"
+for program in hello guarded; do
+    code=0
+    "${!program}" other.spm >out.txt 2>said.txt || code=$?
+    [[ $code == 2 && ! -s out.txt && $(<said.txt) == "$program: other.spm: "* \
+        && $(wc -l <said.txt) == 1 ]] || fail "a missing file: exit $code, $(<said.txt)"
+done

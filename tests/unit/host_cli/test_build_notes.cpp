@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/build/memory_need.hpp"
 #include "host_tools/shapes/shapes.hpp"
-#include "host_tools/spm_build/memory_need.hpp"
 #include "host_tools/spm_build/size_notes.hpp"
 #include "tests/shared/temporary_folder.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/choices/device_choice.hpp"
+#include "platform/choices/device_limits_text.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
-#include "platform/options/device_limits_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/file_readers.hpp"
 #include "platform/hrtc/subcommands.hpp"
 #include "platform/options/file_choice.hpp"
 #include "platform/options/tool_options.hpp"
+#include "platform/readers/file_readers.hpp"
 
 #include <gtest/gtest.h>
 

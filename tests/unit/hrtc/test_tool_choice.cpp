@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/choices/run_options.hpp"
 #include "platform/choices/tool_choice.hpp"
-#include "platform/hrtc/file_readers.hpp"
+#include "platform/readers/file_readers.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/spm_build/memory_need.hpp"
+#include "host_tools/build/memory_need.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <limits>
 
-namespace tactus::spm_build
+namespace tactus
 {
 
 namespace
@@ -86,4 +86,4 @@ std::optional<Refusal> check_memory(const std::string& what, std::uint64_t neede
                                                    what, needed, *available, needed)});
 }
 
-} // namespace tactus::spm_build
+} // namespace tactus

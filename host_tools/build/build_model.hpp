@@ -7,8 +7,6 @@
 #include "rt_core/spm/header.hpp"
 #include "transport/base/refusal.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -19,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-namespace tactus::spm_build
+namespace tactus
 {
 
 /// Options of the conversion of a mesh to a model.
@@ -53,7 +51,7 @@ struct GridChoice
 };
 
 /// Figures of a built model, for the summary.
-struct Outcome
+struct BuiltModel
 {
     HeaderFields fields;
     double diagonal_m{0.0};
@@ -76,11 +74,8 @@ struct Outcome
 /// Writes the model of a mesh; the file appears as a whole or not at all. `source` names the mesh
 /// in refusals. `notes` gets a line for each repair. A mesh that needs more memory than available
 /// or allowed is refused before the work.
-[[nodiscard]] Result<Outcome, Refusal>
+[[nodiscard]] Result<BuiltModel, Refusal>
 build_model(const TriangleMesh& mesh, const std::string& source, const std::filesystem::path& path,
             const ModelOptions& options, const GridChoice& grid, std::vector<std::string>& notes);
 
-/// Figures for --json.
-[[nodiscard]] nlohmann::json figures_of(const Outcome& outcome);
-
-} // namespace tactus::spm_build
+} // namespace tactus

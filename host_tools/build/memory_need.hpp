@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace tactus::spm_build
+namespace tactus
 {
 
 /// Peak memory, rounded up, from a mesh with this number of faces until its model is written.
@@ -25,4 +25,4 @@ namespace tactus::spm_build
 [[nodiscard]] std::optional<Refusal> check_memory(const std::string& what, std::uint64_t needed,
                                                   std::optional<std::uint32_t> allowed_mib);
 
-} // namespace tactus::spm_build
+} // namespace tactus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/file_readers.hpp"
+#include "platform/readers/file_readers.hpp"
 
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/placed_models.hpp"

@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/spm_build/build_model.hpp"
+#include "host_tools/build/build_model.hpp"
 
+#include "host_tools/build/memory_need.hpp"
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/handle_cuts.hpp"
 #include "host_tools/simplify/sampled_distance.hpp"
 #include "host_tools/simplify/simplify.hpp"
-#include "host_tools/spm_build/memory_need.hpp"
 #include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <chrono>
-#include <cmath>
 #include <sys/resource.h>
 #include <utility>
 
-namespace tactus::spm_build
+namespace tactus
 {
 
 namespace
@@ -184,9 +182,10 @@ Result<double, Refusal> grid_step_of(const TriangleMesh& mesh, const std::string
     return step_m ? step_m : Refusal{source + ": " + step_m.error().text};
 }
 
-Result<Outcome, Refusal> build_model(const TriangleMesh& mesh, const std::string& source,
-                                     const std::filesystem::path& path, const ModelOptions& options,
-                                     const GridChoice& grid, std::vector<std::string>& notes)
+Result<BuiltModel, Refusal> build_model(const TriangleMesh& mesh, const std::string& source,
+                                        const std::filesystem::path& path,
+                                        const ModelOptions& options, const GridChoice& grid,
+                                        std::vector<std::string>& notes)
 {
     const auto start = std::chrono::steady_clock::now();
     if (auto refused = check_mesh_memory(mesh, source, options))
@@ -221,39 +220,13 @@ Result<Outcome, Refusal> build_model(const TriangleMesh& mesh, const std::string
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     const double sampled_quanta = sampled_distance_to_base(
         prepared.value().mesh, simplification.value(), kDistanceSamples, kSampleSeed);
-    return Outcome{written.value(),
-                   prepared.value().diagonal_m,
-                   prepared.value().metres_per_unit,
-                   prepared.value().origin_m,
-                   sampled_quanta * prepared.value().quantum_m,
-                   spent.count(),
-                   peak_memory_bytes()};
+    return BuiltModel{written.value(),
+                      prepared.value().diagonal_m,
+                      prepared.value().metres_per_unit,
+                      prepared.value().origin_m,
+                      sampled_quanta * prepared.value().quantum_m,
+                      spent.count(),
+                      peak_memory_bytes()};
 }
 
-nlohmann::json figures_of(const Outcome& outcome)
-{
-    const HeaderFields& fields = outcome.fields;
-    const double quantum_m = std::ldexp(1.0, fields.quantum_log2);
-    const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
-    const double faces = fields.source_faces;
-    return {
-        {"faces", fields.source_faces},
-        {"vertices", fields.source_vertices},
-        {"records", fields.records},
-        {"rounds", fields.rounds},
-        {"base_faces", fields.base_faces},
-        {"seconds", outcome.seconds},
-        {"faces_per_second", faces / outcome.seconds},
-        {"peak_bytes", outcome.peak_bytes},
-        {"file_bytes", fields.file_bytes},
-        {"metres_per_unit", outcome.metres_per_unit},
-        {"bytes_per_face", static_cast<double>(fields.file_bytes) / faces},
-        {"quantisation_diag", fields.quantisation_m / outcome.diagonal_m},
-        {"e_max_diag", fields.max_error_quanta * quantum_m / outcome.diagonal_m},
-        {"hausdorff_diag_sampled", outcome.sampled_distance_m / outcome.diagonal_m},
-        {"regions", fields.occupied_regions},
-        {"chunks", counts.chunks()},
-    };
-}
-
-} // namespace tactus::spm_build
+} // namespace tactus

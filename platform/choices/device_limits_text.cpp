@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/options/device_limits_text.hpp"
+#include "platform/choices/device_limits_text.hpp"
 
 #include "platform/devices/dhd/dhd_device.hpp"
 #include "platform/devices/remote/info_fault.hpp"

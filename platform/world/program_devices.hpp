@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/devices/haptic_device.hpp"
+#include "platform/loop/tool_port.hpp"
+#include "platform/machine/time.hpp"
+#include "platform/world/world_parts.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+namespace tactus::hrtc
+{
+
+/// True while the calling thread is in a callback or device of a program: calls of the World that
+/// may wait are refused there.
+[[nodiscard]] bool is_in_callback() noexcept;
+
+/// Device of a program's own class, which the program may keep, too.
+class SharedDevice final : public HapticDevice
+{
+public:
+    explicit SharedDevice(std::shared_ptr<HapticDevice> device) : device_(std::move(device)) {}
+
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
+    [[nodiscard]] DeviceSample read() noexcept override;
+    void write(const Wrench& wrench) noexcept override;
+    void brake() noexcept override { device_->brake(); }
+    void brake_softly() noexcept override { device_->brake_softly(); }
+    void release_brake() noexcept override { device_->release_brake(); }
+    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
+
+private:
+    std::shared_ptr<HapticDevice> device_;
+};
+
+/// External force from a program's callback. Its throws and long calls are counted.
+class CallbackForce final : public ExternalForceSource
+{
+public:
+    /// Calls longer than `longest` are counted as overruns.
+    CallbackForce(HandForce force, Duration longest) : force_(std::move(force)), longest_(longest)
+    {
+    }
+
+    [[nodiscard]] ExternalForce next(const DeviceSample& sample, const ToolState& tool,
+                                     const ToolOutput& output) noexcept override;
+
+    [[nodiscard]] std::uint64_t throws() const noexcept
+    {
+        return throws_.load(std::memory_order_relaxed);
+    }
+    [[nodiscard]] std::uint64_t overruns() const noexcept
+    {
+        return overruns_.load(std::memory_order_relaxed);
+    }
+
+private:
+    HandForce force_;
+    Duration longest_;
+    std::atomic<std::uint64_t> throws_{0};   ///< Relaxed: for display only.
+    std::atomic<std::uint64_t> overruns_{0}; ///< Relaxed: for display only.
+};
+
+} // namespace tactus::hrtc

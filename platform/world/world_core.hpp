@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/session.hpp"
+#include "platform/loop/hand_tap.hpp"
+#include "platform/scene/program_scene.hpp"
+#include "platform/world/encoded_mesh.hpp"
+#include "platform/world/held_device.hpp"
+#include "platform/world/program_devices.hpp"
+#include "platform/world/world.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace tactus
+{
+
+/// What a World and its handles share. It outlives the World while a call of a handle runs.
+class WorldCore : public std::enable_shared_from_this<WorldCore>
+{
+public:
+    explicit WorldCore(WorldOptions options);
+    WorldCore(const WorldCore&) = delete;
+    WorldCore& operator=(const WorldCore&) = delete;
+    ~WorldCore();
+
+    [[nodiscard]] WorldObject add(const WorldModel& model, const ObjectOptions& options);
+    [[nodiscard]] WorldObject add(const WorldObject& like, const ObjectOptions& options);
+    [[nodiscard]] Hand add(const WorldTool& tool, const WorldDevice& device,
+                           const HandOptions& options);
+    [[nodiscard]] std::vector<WorldObject> add_scene(const std::string& path);
+    [[nodiscard]] std::optional<Refusal> error() const;
+
+    [[nodiscard]] Result<Done, Refusal> start();
+    [[nodiscard]] Result<Done, Refusal> step(double dt_s);
+    [[nodiscard]] Result<HandState, Refusal> step(std::uint32_t hand, const HandPose& pose,
+                                                  double dt_s);
+    [[nodiscard]] Result<Done, Refusal> hold(std::uint32_t hand, const HandPose& pose);
+    [[nodiscard]] Result<Done, Refusal> wait();
+    [[nodiscard]] Result<Done, Refusal> stop();
+
+    [[nodiscard]] Result<Done, Refusal> move(const WorldObject& object, const Pose& pose);
+    [[nodiscard]] Result<Done, Refusal> feel(const WorldObject& object,
+                                             const MaterialOptions& material);
+    [[nodiscard]] Result<Done, Refusal> remove(const WorldObject& object);
+
+    [[nodiscard]] HandState state(std::uint32_t hand) const noexcept;
+    [[nodiscard]] std::string why(std::uint32_t hand, const HandState& state) const;
+    [[nodiscard]] bool is_running() const noexcept { return phase_.load() == Phase::running; }
+    [[nodiscard]] WorldCounts counts() const;
+
+private:
+    enum class Phase : std::uint8_t
+    {
+        open,    ///< Nothing runs yet.
+        running, ///< The loop of start() runs.
+        stepped, ///< The program runs the frames.
+        ended,
+    };
+
+    /// One hand's parts beside its options.
+    struct HandParts
+    {
+        std::shared_ptr<HapticDevice> own; ///< Null without a device of the program.
+        hrtc::HeldDevice* held{nullptr};   ///< The device, while a session has it.
+        DeviceLimits limits{};             ///< Limits of a held device.
+        bool is_held{false};
+        std::optional<HandPose> first_pose;         ///< Pose before the session.
+        std::unique_ptr<hrtc::CallbackForce> force; ///< Null without a callback.
+    };
+
+    [[nodiscard]] Result<std::size_t, Refusal> take_model(const WorldModel& model);
+    [[nodiscard]] Result<WorldObject, Refusal> try_add(const WorldModel& model,
+                                                       const ObjectOptions& options);
+    [[nodiscard]] Result<WorldObject, Refusal> place(std::size_t model,
+                                                     const ObjectOptions& options);
+    [[nodiscard]] Result<Hand, Refusal> try_add(const WorldTool& tool, const WorldDevice& device,
+                                                const HandOptions& options);
+    [[nodiscard]] std::string set_shape(hrtc::ToolOptions& made, const WorldTool& tool);
+    [[nodiscard]] std::string set_device(hrtc::ToolOptions& made, const WorldDevice& device,
+                                         HandParts& parts, std::size_t hand);
+    template <typename Handle>
+    [[nodiscard]] Handle handle_or_refusal(Result<Handle, Refusal> made);
+    [[nodiscard]] WorldObject handle_of(std::uint32_t number, std::uint32_t generation);
+    [[nodiscard]] std::optional<Refusal> why_not(std::string_view call) const;
+    [[nodiscard]] std::optional<Refusal> check_options() const;
+    void take_options(bool is_stepped);
+    [[nodiscard]] std::optional<Refusal> open(bool is_stepped);
+    void close();
+    void join_keeper();
+    void keep_loop(std::optional<Refusal>& refusal, std::promise<void>& decided);
+    [[nodiscard]] Result<Done, Refusal> run_step(double dt_s, std::optional<std::uint32_t> hand,
+                                                 const HandPose& pose);
+    [[nodiscard]] Result<Done, Refusal> finished() const;
+    [[nodiscard]] std::optional<Refusal> why_not_change(const WorldObject& object,
+                                                        std::string_view call) const;
+    void tell_of_callbacks();
+    [[nodiscard]] std::string name_of(std::uint32_t object) const;
+
+    /// Guards the members up to phase_. The keeper's thread never takes it: start() and stop() hold
+    /// it while they wait for that thread.
+    mutable std::mutex mutex_;
+    WorldOptions asked_;
+    hrtc::Options options_;
+    hrtc::MeshFolder meshes_;
+    std::vector<HandParts> hands_;
+    std::vector<bool> is_served_; ///< One an object: true if a server moves it.
+    std::optional<Refusal> first_refusal_;
+    bool has_published_{false};
+    bool has_files_{false};
+
+    std::mutex joining_; ///< Guards keeper_.
+    std::thread keeper_;
+    std::atomic<Phase> phase_{Phase::open};
+    std::atomic<bool> is_stopping_{false};
+    mutable std::mutex names_mutex_;             ///< Guards names_.
+    std::map<std::uint32_t, std::string> names_; ///< Names of the objects, by number.
+    // Set before phase_ leaves Phase::open; they live as long as the core.
+    std::unique_ptr<hrtc::HandTap> tap_;
+    std::unique_ptr<hrtc::ProgramScene> scene_;
+    std::unique_ptr<hrtc::Session> session_;
+    std::optional<hrtc::FinishedRun> done_; ///< Results; set before Phase::ended.
+    std::uint64_t told_throws_{0};          ///< Throws at the last line of the log.
+    std::uint64_t told_overruns_{0};        ///< Overruns at the last line of the log.
+};
+
+} // namespace tactus
