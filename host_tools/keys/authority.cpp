@@ -6,10 +6,14 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <ctime>
 #include <filesystem>
+#include <memory>
 #include <openssl/bn.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
+#include <string>
 #include <system_error>
 #include <utility>
 

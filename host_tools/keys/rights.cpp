@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
+#include <ctime>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace tactus::keys

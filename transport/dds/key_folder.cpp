@@ -11,11 +11,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
+#include <memory>
 #include <openssl/sha.h>
 #include <openssl/x509_vfy.h>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace tactus::dds
