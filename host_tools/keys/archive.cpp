@@ -16,7 +16,7 @@ namespace
 
 constexpr std::size_t kBlock = 512;
 
-/// A header of POSIX.1-1988, ustar.
+/// Header of a file in the ustar format of POSIX.1-1988.
 std::string header(const std::string& name, std::size_t bytes, unsigned mode, char type,
                    std::time_t time)
 {
@@ -29,7 +29,7 @@ std::string header(const std::string& name, std::size_t bytes, unsigned mode, ch
     put(116, fmt::format("{:07o}", 0));
     put(124, fmt::format("{:011o}", bytes));
     put(136, fmt::format("{:011o}", time));
-    put(148, "        "); // The sum is made with blanks in its place.
+    put(148, "        "); // Blanks stand for the checksum while it is computed.
     block[156] = type;
     put(257, std::string_view("ustar\0"
                               "00",

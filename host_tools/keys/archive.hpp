@@ -11,7 +11,7 @@ namespace tactus::keys
 
 struct ArchivedFile
 {
-    std::string name; ///< In the archive's folder; short.
+    std::string name; ///< Name within the folder, with it at most 99 bytes.
     std::string bytes;
     bool is_secret{false}; ///< Mode 0600, else 0644.
 };

@@ -69,7 +69,8 @@ bool add_extension(X509* certificate, int kind, const char* value)
     return is_added;
 }
 
-/// Signed by `issuer`, or by itself: then it is an authority. The certificate is null on failure.
+/// Makes an identity signed by `issuer`, or, if that is null, an authority signed by itself. The
+/// certificate is null on failure.
 Identity make_identity(const std::string& name, std::time_t from, std::time_t until,
                        const Identity* issuer)
 {
@@ -184,7 +185,7 @@ Result<Authority, Refusal> Authority::open(const std::string& folder, std::time_
     {
         if (fs::exists(fs::path(folder) / kCrl, error))
         {
-            return Refusal{fmt::format("{}/{} is no list of what is revoked", folder, kCrl)};
+            return Refusal{fmt::format("{}/{} is no list of revoked certificates", folder, kCrl)};
         }
         authority.crl_.reset(X509_CRL_new());
         X509_CRL_set_version(authority.crl_.get(), X509_CRL_VERSION_2);

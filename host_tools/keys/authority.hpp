@@ -21,33 +21,34 @@ struct Identity
     openssl::Key key;
 };
 
-/// The two certificate authorities of a site, of identities and of permissions, in a folder of
-/// their own. Two, since Cyclone takes a document that any certificate below its permissions
-/// authority has signed: with one authority a controller could sign rights for itself.
+/// The two certificate authorities of a site, for identities and for permissions, in one folder.
+/// Cyclone accepts a permissions document signed by any certificate below its permissions
+/// authority; with one authority a controller could sign rights for itself.
 ///
-/// Beside them lie the list of what is revoked (crl.pem) and, below issued/, each certificate
-/// without its key.
+/// The folder also has the list of revoked certificates (crl.pem), and all issued certificates
+/// without their keys (issued/).
 class Authority
 {
 public:
-    /// Makes the folder where it is missing, with keys that are good for ten years from `now`.
+    /// Makes the folder if it is missing, with authorities that are valid for ten years from `now`.
+    /// Refused if a file can't be read or written.
     [[nodiscard]] static Result<Authority, Refusal> open(const std::string& folder,
                                                          std::time_t now);
 
-    /// A new key and certificate for CN=`name`.
+    /// Makes a key and a certificate for CN=`name`.
     [[nodiscard]] Result<Identity, Refusal> issue(const std::string& name, std::time_t from,
                                                   std::time_t until);
-    /// Revokes every certificate of that name; refused when there is none.
+    /// Revokes every certificate of that name; refused if there is none.
     [[nodiscard]] Result<Done, Refusal> revoke(const std::string& name, std::time_t now);
-    /// Signs the list of what is revoked for another time.
+    /// Signs the list of revoked certificates for another period.
     [[nodiscard]] Result<Done, Refusal> renew_crl(std::time_t from, std::time_t until);
 
-    /// Whether it is of this authority, has not ended and is not revoked.
+    /// True if the certificate is of this authority, has not expired and is not revoked.
     [[nodiscard]] bool vouches_for(const Identity& identity, std::time_t now) const;
-    /// The document in S/MIME, signed by the authority of permissions; empty when that fails.
+    /// The document in S/MIME, signed by the permissions authority; empty on failure.
     [[nodiscard]] std::string sign(const std::string& document) const;
 
-    /// In PEM, for every machine.
+    /// Certificates and list in PEM, for every machine.
     [[nodiscard]] std::string identity_ca() const;
     [[nodiscard]] std::string permissions_ca() const;
     [[nodiscard]] std::string crl() const;
@@ -61,7 +62,7 @@ private:
     openssl::Crl crl_;
 };
 
-/// In PEM.
+/// The object in PEM.
 [[nodiscard]] std::string text_of(X509* certificate);
 [[nodiscard]] std::string text_of(EVP_PKEY* key);
 [[nodiscard]] std::string text_of(X509_CRL* crl);

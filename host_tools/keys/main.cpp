@@ -20,8 +20,8 @@ namespace
 
 int run(int argc, char** argv)
 {
-    CommandLine line("tactus-keys", "Makes the keys with which the programs of a site take part in "
-                                    "a DDS domain, and what each may do there.");
+    CommandLine line("tactus-keys", "Makes the keys of the programs on a DDS domain: certificates, "
+                                    "their rights, and an archive for each machine.");
     auto parsed = parse_options(line, argc, argv);
     if (const int* code = std::get_if<int>(&parsed))
     {

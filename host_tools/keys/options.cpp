@@ -36,46 +36,51 @@ void declare_options(CommandLine& line, Site& site, Names& names)
 {
     line.add_version("tactus-keys " TACTUS_VERSION);
     line.begin_task("The site", "tactus-keys --domain 7 --servers station --controllers hand-1");
-    line.add_option_file("--config", "TOML file of these options, as hrtc's: domain = 7, servers = "
-                                     "[\"station\"], controllers = [\"hand-1\", \"hand-2\"]");
-    line.add_option("--domain", site.domain, "The DDS domain that is protected")
+    line.add_option_file("--config",
+                         "TOML file of these options, for example: domain = 7, servers = "
+                         "[\"station\"], controllers = [\"hand-1\", \"hand-2\"]");
+    line.add_option("--domain", site.domain, "DDS domain of the site")
         .integer_between(std::uint32_t{0}, dds::kMaxSecuredDomain)
         .show_default();
     line.add_option("--servers", names.servers,
-                    "Names that may serve models and scenes (spm_publish), and watch")
+                    "Names of servers (spm_publish): they serve models and scenes, and may watch")
         .repeatable_with_more();
     line.add_option("--controllers", names.controllers,
-                    "Names that may touch (hrtc): each requests and reads in partitions of its own "
-                    "name alone")
+                    "Names of controllers (hrtc): each requests and reads only in partitions of "
+                    "its own name")
         .repeatable_with_more();
-    line.add_option("--viewers", names.viewers, "Names that may watch controllers (spm_view)")
+    line.add_option("--viewers", names.viewers,
+                    "Names of viewers (spm_view): they may watch controllers")
         .repeatable_with_more();
     line.begin_task("The keys", "tactus-keys --config site.toml --revoke hand-1");
-    line.add_option("--days", site.days, "How long certificates, rights and the CRL are good")
+    line.add_option("--days", site.days, "Validity of certificates, rights and the CRL, in days")
         .integer_between(std::uint32_t{1}, std::uint32_t{3'650})
         .show_default();
-    line.add_option("--renew", site.renewed, "Names that get a new key and certificate")
+    line.add_option("--renew", site.renewed, "Names that get a new key and a new certificate")
         .repeatable_with_more()
         .not_in_file();
     line.add_option("--revoke", site.revoked,
-                    "Names whose certificates count no more where the new CRL is; who is still of "
-                    "the site gets new ones")
+                    "Names whose present certificates are put on the CRL, which every machine "
+                    "needs then; a "
+                    "name that is still of the site gets a new certificate")
         .repeatable_with_more()
         .not_in_file();
-    line.begin_task("Where they are", "tactus-keys --config site.toml --authority /media/usb/ca");
-    line.add_option("--authority", site.authority,
-                    "Folder of the certificate authorities, made where it is missing; keep it "
-                    "apart from all machines. Another one makes all keys new")
+    line.begin_task("Folders", "tactus-keys --config site.toml --authority /media/usb/ca");
+    line.add_option(
+            "--authority", site.authority,
+            "Folder of the certificate authorities, made if it is missing. Keep it away from the "
+            "machines that run programs. With another folder, all keys are new")
         .show_default();
-    line.add_option("--output", site.output,
-                    "Folder that gets NAME/ and NAME.tar for each name; the tar is for "
-                    "/etc/tactus of its machine")
+    line.add_option(
+            "--output", site.output,
+            "Folder for NAME/ and NAME.tar of each name; unpack the archive in /etc/tactus of its "
+            "machine")
         .show_default();
     line.add_log_options();
 }
 
-/// As in a certificate, a permission's pattern and a file's name. A dot would let 'a' read what is
-/// for 'a.b'.
+/// True if the name can stand in a certificate, a pattern of a permission and a file name. With a
+/// dot, controller 'a' could read the pieces of 'a.b'.
 bool is_plain_name(std::string_view name)
 {
     return !name.empty() && name.size() <= kNameMost &&
@@ -87,7 +92,7 @@ bool is_plain_name(std::string_view name)
                                });
 }
 
-/// Empty when all is well.
+/// Returns the fault of the names, or an empty text.
 std::string take_members(Site& site, const Names& names)
 {
     const std::pair<Role, const std::vector<std::string>*> roles[] = {

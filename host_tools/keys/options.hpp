@@ -14,8 +14,8 @@ class CommandLine;
 namespace tactus::keys
 {
 
-/// Reads the command line and the site's file. Returns the exit code instead when the program
-/// should leave: after --help, --version, or wrong usage, which gets one line on stderr.
+/// Reads the command line and the option file. Returns the exit code if the program should end:
+/// after --help, --version, or wrong usage, which gets one line on stderr.
 [[nodiscard]] std::variant<Site, int> parse_options(CommandLine& line, int argc, char** argv);
 
 } // namespace tactus::keys

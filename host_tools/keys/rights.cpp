@@ -20,7 +20,7 @@ namespace tactus::keys
 namespace
 {
 
-/// One topic, and partitions by a pattern in which {} is the certificate's name.
+/// A topic, and a pattern of partitions in which {} is the certificate's name.
 struct Right
 {
     const char* topic;
@@ -37,12 +37,12 @@ constexpr const char* kOwnPieces = "{}.*";
 constexpr std::array kServerWrites{Right{"catalogue", kUnnamed}, Right{"chunks", kAny},
                                    Right{"objects", kOfServers}, Right{"motion", kOfServers}};
 constexpr std::array kServerReads{Right{"catalogue", kUnnamed}, Right{"wanted", kAny},
-                                  Right{"telemetry", kAny}, Right{"front", kAny}};
+                                  Right{"telemetry", kAny}, Right{"refinement_state", kAny}};
 constexpr std::array kControllerWrites{Right{"wanted", kOwn}, Right{"telemetry", kOwn},
-                                       Right{"front", kOwn}};
+                                       Right{"refinement_state", kOwn}};
 constexpr std::array kControllerReads{Right{"catalogue", kUnnamed}, Right{"chunks", kOwnPieces},
                                       Right{"objects", kOfServers}, Right{"motion", kOfServers}};
-constexpr std::array kViewerReads{Right{"telemetry", kAny}, Right{"front", kAny}};
+constexpr std::array kViewerReads{Right{"telemetry", kAny}, Right{"refinement_state", kAny}};
 
 struct Rights
 {

@@ -28,12 +28,12 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Clocks of a site differ; what is made is good from a day ago.
+/// Clocks of machines differ: validity begins a day before.
 constexpr std::time_t kSlack_s = kDay_s;
 /// The archive's folder, below /etc/tactus.
 constexpr const char* kFolder = "keys";
 
-/// As long as it lives the process makes files that other users may not read.
+/// During its lifetime, new files of the process are unreadable for other users.
 class OwnFiles
 {
 public:
@@ -53,7 +53,7 @@ struct Period
     std::time_t until;
 };
 
-/// A file for systemd that hands the keys to a service of a user of its own.
+/// Drop-in for systemd, which gives the keys to a service with a separate user.
 std::string credentials()
 {
     std::string text = "# For /etc/systemd/system/NAME.service.d: the service reads its keys in "
@@ -70,7 +70,7 @@ bool has(const std::vector<std::string>& names, const std::string& name)
     return std::ranges::find(names, name) != names.end();
 }
 
-/// The one that is there, where it holds.
+/// The present identity of the folder if it is still valid, otherwise an empty one.
 Identity kept_identity(const fs::path& folder, const Authority& authority, std::time_t now)
 {
     Identity identity{openssl::read_certificate(folder / dds::kIdentityFile),

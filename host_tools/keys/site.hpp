@@ -14,7 +14,7 @@
 namespace tactus::keys
 {
 
-/// Beside a member's keys: a drop-in for its service.
+/// Drop-in for the service, beside the keys.
 inline constexpr const char* kCredentialsFile = "credentials.conf";
 
 struct Member
@@ -23,19 +23,19 @@ struct Member
     std::string name;
 };
 
-/// The programs of a site, and what is to be made for them.
+/// The programs of a site, and the choices for their keys.
 struct Site
 {
     std::uint32_t domain{0};
     std::vector<Member> members;
-    std::uint32_t days{365}; ///< That certificates, rights and the CRL hold.
+    std::uint32_t days{365}; ///< Validity of certificates, rights and the CRL.
     std::string authority{"authority"};
     std::string output{"machines"};
-    std::vector<std::string> renewed; ///< Get a new certificate,
-    std::vector<std::string> revoked; ///< and these besides: the one before counts no more.
+    std::vector<std::string> renewed; ///< Names that get a new certificate.
+    std::vector<std::string> revoked; ///< Names whose certificates are put on the CRL.
 };
 
-/// What a member has now.
+/// Result for one member.
 struct IssuedKeys
 {
     Member member;
@@ -44,9 +44,9 @@ struct IssuedKeys
     bool is_new{false};
 };
 
-/// Makes what is missing, ended or to be renewed, signs rights and CRL for `days` from `now`, and
-/// writes for each member a folder output/NAME and an archive output/NAME.tar with it as keys/.
-/// What is there and holds stays. A file that can't be read or written is refused.
+/// Makes the certificates that are missing, expired or to be renewed; valid ones stay. Signs rights
+/// and CRL for `days` from `now`. Writes a folder output/NAME for each member, and an archive
+/// output/NAME.tar with the same files in keys/. Refused if a file can't be read or written.
 [[nodiscard]] Result<std::vector<IssuedKeys>, Refusal> make_keys(const Site& site, std::time_t now);
 
 } // namespace tactus::keys

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# dds_security.sh BIN CHECK_REPORT SANITIZER INTRUDER LAX_LIBRARY: server and controller with keys of
-# tactus-keys work as without. A stranger without keys, with those of another authority, with revoked
-# keys or with forged rights reads nothing, and no program reads its data. A controller reads nothing
-# that is for another one, a viewer only telemetry, even if their own plugin checks nothing. A server
-# is identified by its certificate.
+# dds_security.sh BIN CHECK_REPORT SANITIZER INTRUDER LAX_LIBRARY: server and controller with keys
+# of tactus-keys work as without. A stranger without keys, with those of another authority, with
+# revoked keys or with forged rights reads nothing, and no program reads its data. A controller
+# reads nothing that is for another one, a viewer only telemetry, even if their own plugin checks
+# nothing. A server is identified by its certificate.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
 readonly intruder=$4 lax=$5
 readonly plain='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
@@ -59,7 +59,8 @@ CYCLONEDDS_URI='<CycloneDDS/>' expect 2 'names a network' "$publish" bumpy.spm \
 
 # What each role may read. The readers' own plugin checks nothing: the writers' does.
 intrude "$desk" - read '*'
-{ sees telemetry && sees front; } || fault "a viewer sees no telemetry: $(cat intruder.log)"
+{ sees telemetry && sees refinement_state; } \
+    || fault "a viewer sees no telemetry: $(cat intruder.log)"
 intrude "$desk" "$lax" read '*'
 sees telemetry || fault "a viewer sees no telemetry: $(cat intruder.log)"
 for topic in catalogue objects motion wanted chunks; do

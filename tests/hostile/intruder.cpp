@@ -6,8 +6,8 @@
 ///
 ///     TOPIC matched PEERS samples COUNT      or      TOPIC refused
 ///
-/// KEYS is a folder of tactus-keys, which isn't checked, LIBRARY the plugin of access control; "-"
-/// for none, and for Cyclone's. Exits 2 where the domain can't be joined.
+/// KEYS is an unchecked folder of tactus-keys, or "-" for none. LIBRARY is the plugin of access
+/// control, or "-" for Cyclone's. Exits with 2 if the domain can't be joined.
 
 #include "rt_core/limits.hpp"
 #include "transport/dds/security.hpp"
@@ -46,7 +46,7 @@ std::array<Spied, 7> topics{{{"catalogue", &tactus_v5_CatalogueEntry_desc},
                              {"wanted", &tactus_v5_Wanted_desc},
                              {"chunks", &tactus_v5_Pieces_desc},
                              {"telemetry", &tactus_v5_Telemetry_desc},
-                             {"front", &tactus_v5_RefinementState_desc}}};
+                             {"refinement_state", &tactus_v5_RefinementState_desc}}};
 
 dds_entity_t join(std::uint32_t domain, const std::string& keys, const std::string& library)
 {
@@ -64,7 +64,7 @@ dds_entity_t join(std::uint32_t domain, const std::string& keys, const std::stri
     return participant;
 }
 
-/// A reader asks for the least, a writer offers the most.
+/// The reader requests the least QoS, the writer offers the most.
 void open(Spied& topic, dds_entity_t participant, dds_entity_t parent, bool writes)
 {
     const std::string name = fmt::format("tactus/v{}/{}", dds::kProtocolVersion, topic.name);

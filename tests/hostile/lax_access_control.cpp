@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-// Cyclone's plugin of access control, but for the checks of what its own program opens: what an
-// attacker would use who has a certificate. Whether peers check, too, the test shows.
+// Cyclone's plugin of access control without the checks of the program's own readers and writers,
+// as an attacker with a certificate would use it. The test shows the checks of the peers.
 #include <dds/dds.h>
 #include <dds/security/dds_security_api_access_control.h>
 

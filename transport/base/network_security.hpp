@@ -10,8 +10,8 @@ namespace tactus
 /// The options --security and --plain of all programs that use DDS.
 struct NetworkSecurity
 {
-    std::string keys;     ///< Folder that tactus-keys made; empty: none.
-    bool is_plain{false}; ///< A network beyond this machine may be joined without keys.
+    std::string keys;     ///< Folder of keys that tactus-keys made; empty: none.
+    bool is_plain{false}; ///< True if a network may be joined without keys.
 };
 
 } // namespace tactus

@@ -169,10 +169,10 @@ Refusal join_error(std::uint32_t id, std::int32_t code)
                         reason.empty() ? dds_strretcode(code) : reason, more)};
 }
 
-/// Keys that end sooner are spoken of.
+/// Time before the end of the keys with a warning at the start.
 constexpr std::time_t kSoon_s = 30 * 24 * 3'600;
 
-/// Nothing where the domain is joined without keys.
+/// The keys of the choice; none if the domain is joined without.
 Result<std::optional<KeyFolder>, Refusal> take_keys(const DomainChoice& choice)
 {
     const NetworkSecurity& security = choice.security;
@@ -180,8 +180,9 @@ Result<std::optional<KeyFolder>, Refusal> take_keys(const DomainChoice& choice)
     {
         if (!security.is_plain && is_open_to_network(configuration_of_user()))
         {
-            return Refusal{"CYCLONEDDS_URI names a network, where anyone may take part: --security "
-                           "DIR gives this program keys, --plain goes on without"};
+            return Refusal{
+                "CYCLONEDDS_URI names a network, and every program there can take part: use "
+                "--security DIR for keys, or --plain to continue without"};
         }
         return std::optional<KeyFolder>();
     }

@@ -32,10 +32,10 @@ enum class Party : std::uint8_t
     both,       ///< Found like a server, and searches for servers.
 };
 
-/// Which domain is joined, and what protects it.
+/// A domain to join, and its protection.
 struct DomainChoice
 {
-    /// Without keys, on any network.
+    /// Joins without keys, on any network.
     DomainChoice(std::uint32_t domain) : id(domain), security{{}, true} {}
     DomainChoice(std::uint32_t domain, NetworkSecurity chosen)
         : id(domain), security(std::move(chosen))

@@ -70,7 +70,7 @@ bool is_open_to_others(const std::string& path)
     return !error && (rights & fs::perms::others_all) != fs::perms::none;
 }
 
-/// Of the certificate, its authority and the CRL, the one that is not valid.
+/// Text about the invalid one of certificate, authority and CRL.
 std::string why_not_valid(const X509_STORE_CTX* context, const X509_CRL* crl, std::time_t now)
 {
     const int error = X509_STORE_CTX_get_error(context);
@@ -99,7 +99,8 @@ std::string why_not_valid(const X509_STORE_CTX* context, const X509_CRL* crl, st
     }
 }
 
-/// The certificate alone first, since it ends with its CRL, or begins with it.
+/// The certificate is checked without the CRL first: both begin and end together, and a line about
+/// the certificate is clearer.
 std::string check_identity(X509* identity, X509* authority, X509_CRL* crl, std::time_t now)
 {
     const Store store(X509_STORE_new());
@@ -125,10 +126,11 @@ std::string check_identity(X509* identity, X509* authority, X509_CRL* crl, std::
 
 void free_stack(STACK_OF(X509) * certificates)
 {
-    sk_X509_free(certificates); // Not what it holds.
+    sk_X509_free(certificates); // The certificates have other owners.
 }
 
-/// What the authority itself signed, no one below it; nothing else.
+/// Text of a file that the authority itself signed. A signature by a certificate below the
+/// authority does not count.
 std::optional<std::string> verified_text(const std::string& path, X509* authority)
 {
     const Bio file(BIO_new_file(path.c_str(), "r"));
@@ -148,7 +150,7 @@ std::optional<std::string> verified_text(const std::string& path, X509* authorit
     return std::string(bytes, static_cast<std::size_t>(size));
 }
 
-/// The number of <TAG> behind `at`, and the place behind it.
+/// Number of the next <TAG> from `at`; `at` is then the place behind the tag.
 std::optional<std::uint32_t> number_in(std::string_view text, std::string_view tag, std::size_t& at)
 {
     const std::size_t found = text.find(tag, at);
@@ -161,7 +163,7 @@ std::optional<std::uint32_t> number_in(std::string_view text, std::string_view t
     return is_number ? std::optional(number) : std::nullopt;
 }
 
-/// Whether a <domains> of the document names it, by <id> or <min> and <max>.
+/// True if a <domains> element of the document contains the domain, by <id> or <min> and <max>.
 bool has_domain(std::string_view document, std::uint32_t domain)
 {
     for (std::size_t at = 0; const auto id = number_in(document, "<id>", at);)
@@ -206,7 +208,7 @@ std::string name_of(const X509* certificate)
                                         static_cast<std::size_t>(ASN1_STRING_length(text))});
 }
 
-/// The line's end, empty when all is well; fills in what the files say.
+/// Returns the fault of the files or an empty text, and fills in name and validity.
 std::string check_files(KeyFolder& keys, std::uint32_t domain, std::time_t now)
 {
     const auto path_of = [&](const char* file) { return join_path(keys.path, file); };

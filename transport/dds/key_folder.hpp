@@ -13,36 +13,36 @@
 namespace tactus::dds
 {
 
-/// Cyclone takes no higher domain in governance and permissions.
+/// Largest domain that Cyclone accepts in governance and permissions.
 inline constexpr std::uint32_t kMaxSecuredDomain = 230;
 
 inline constexpr const char* kIdentityCaFile = "identity_ca.pem";
 inline constexpr const char* kPermissionsCaFile = "permissions_ca.pem";
 inline constexpr const char* kIdentityFile = "identity.pem";
-inline constexpr const char* kKeyFile = "identity.key"; ///< The one that is secret.
+inline constexpr const char* kKeyFile = "identity.key"; ///< The secret file.
 inline constexpr const char* kGovernanceFile = "governance.p7s";
 inline constexpr const char* kPermissionsFile = "permissions.p7s";
 inline constexpr const char* kCrlFile = "crl.pem";
 inline constexpr std::array kKeyFiles{kIdentityCaFile, kPermissionsCaFile, kIdentityFile, kKeyFile,
                                       kGovernanceFile, kPermissionsFile,   kCrlFile};
 
-/// The keys of one program on a protected domain: a folder with all of kKeyFiles.
+/// Keys of one program on a protected domain: a folder with all of kKeyFiles.
 struct KeyFolder
 {
-    std::string path;          ///< Absolute.
-    std::string name;          ///< Of the certificate: a controller's is its name on the domain.
-    std::time_t valid_until{}; ///< When the certificate or the CRL ends.
+    std::string path; ///< Absolute path of the folder.
+    std::string name; ///< Common name of the certificate; for a controller its name on the domain.
+    std::time_t valid_until{}; ///< End of the certificate or the CRL, the earlier.
 };
 
-/// Refused in one line: a file that is missing or broken; a private key that other users may read
-/// or that isn't the certificate's; at the time `now` a certificate or CRL that isn't valid yet or
-/// any more, or a certificate that is revoked or another authority's; rights that were changed or
-/// are for other domains than `domain`; and domains above 230.
+/// Reads and checks a folder of keys. Refused in one line: a missing or broken file; a private key
+/// that other users may read or that does not belong to the certificate; a certificate or CRL that
+/// is not valid at `now`; a certificate that is revoked or of another authority; documents that
+/// were changed or are not for `domain`; domains above 230. Ordinary thread; reads files.
 [[nodiscard]] Result<KeyFolder, Refusal> read_key_folder(const std::string& path,
                                                          std::uint32_t domain, std::time_t now);
 
-/// By which lines and reports call the certificate of that name: 12 hexadecimal digits, with which
-/// its participants' GUIDs begin (Participants::certificate_of()).
+/// The 12 hexadecimal digits that stand for the certificate of that name in lines and reports. The
+/// GUIDs of its participants begin with them (Participants::certificate_of()).
 [[nodiscard]] std::string certificate_digits(const std::string& name);
 
 } // namespace tactus::dds

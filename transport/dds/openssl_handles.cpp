@@ -12,7 +12,7 @@ namespace tactus::openssl
 namespace
 {
 
-/// OpenSSL would ask at the terminal.
+/// Prevents OpenSSL's question at the terminal.
 int refuse_password(char* /*buffer*/, int /*size*/, int /*writes*/, void* /*context*/)
 {
     return -1;

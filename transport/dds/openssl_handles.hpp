@@ -9,7 +9,7 @@
 #include <openssl/x509.h>
 #include <string>
 
-// Owners of OpenSSL's objects. A null pointer is an object that could not be made or read.
+// Owners of OpenSSL's objects. A null pointer stands for an object that could not be made or read.
 namespace tactus::openssl
 {
 
@@ -32,11 +32,11 @@ using SignedText = std::unique_ptr<PKCS7, Free<PKCS7_free>>;
 using Store = std::unique_ptr<X509_STORE, Free<X509_STORE_free>>;
 using StoreContext = std::unique_ptr<X509_STORE_CTX, Free<X509_STORE_CTX_free>>;
 
-/// The name of a program's certificate: CN=`name` and nothing else. Null where it is too long.
+/// Subject of a program's certificate: CN=`name` and nothing else. Null if the name is too long.
 [[nodiscard]] Name subject_of(const std::string& name);
 
-/// Reads a file in PEM; null where it is missing or holds something else. A key with a password is
-/// refused.
+/// Read a file in PEM. Null if the file is missing, has other contents, or has a key with a
+/// password.
 [[nodiscard]] Certificate read_certificate(const std::string& path);
 [[nodiscard]] Crl read_crl(const std::string& path);
 [[nodiscard]] Key read_key(const std::string& path);

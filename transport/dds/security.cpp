@@ -34,8 +34,8 @@ void set_plugin(dds_qos* qos, const std::string& kind, const char* library, cons
                   (std::string("finalize_") + function).c_str());
 }
 
-/// What Cyclone tells of a participant without other properties. A value that isn't known
-/// is left out.
+/// Adds program, process and machine, which Cyclone adds only to participants without properties.
+/// Unknown values are left out.
 void tell_of_process(dds_qos* qos)
 {
     constexpr bool kToOthers = true;
@@ -54,7 +54,7 @@ void tell_of_process(dds_qos* qos)
     }
 }
 
-/// The elements of XML, those of files among them, without comments.
+/// Text of the XML elements, including those of named files, without comments.
 std::string configuration_text(const std::string& uri)
 {
     std::string text;
@@ -62,8 +62,7 @@ std::string configuration_text(const std::string& uri)
     {
         if (uri[at] == '<')
         {
-            text +=
-                uri.substr(at); // What follows are elements; a file behind them isn't looked at.
+            text += uri.substr(at); // Elements end the list of files.
             break;
         }
         const std::size_t end = std::min(uri.find(',', at), uri.size());
@@ -81,7 +80,7 @@ std::string configuration_text(const std::string& uri)
     return text;
 }
 
-/// What stands in quotes behind `word`, from `at` to the end of the element.
+/// Value in quotes of the attribute `word`; empty if the element has none.
 std::string_view attribute(std::string_view element, std::string_view word)
 {
     const std::size_t found = element.find(word);

@@ -11,13 +11,12 @@ struct dds_qos; // Cyclone's.
 namespace tactus::dds
 {
 
-/// Puts the three plugins of DDS Security, with these keys, into a participant's quality of
-/// service.
+/// Adds the three plugins of DDS Security, with these keys, to the QoS of a participant.
 void protect(dds_qos* participant, const KeyFolder& keys);
 
-/// Whether a value of CYCLONEDDS_URI leaves programs open to a network: it names other interfaces
-/// than loopback, or none, and has no element <Security>. Reads the files that it names; one that
-/// can't be read is Cyclone's to refuse. No parser of XML.
+/// True if a value of CYCLONEDDS_URI opens programs to a network without keys: it names another
+/// interface than loopback, or none, and has no element <Security>. Reads the named files; Cyclone
+/// refuses unreadable ones. Searches the text and does not parse XML.
 [[nodiscard]] bool is_open_to_network(const std::string& cyclonedds_uri);
 
 } // namespace tactus::dds

@@ -297,10 +297,10 @@ TEST_F(KeysOfASite, leave_the_authority_to_its_user)
     }
 }
 
-/// By the digits with which Cyclone 0.10.2 began the GUIDs of these.
+/// Expected digits: those with which Cyclone 0.10.2 began the GUIDs of these certificates.
 TEST(CertificateDigits, are_those_of_cyclones_plugin)
 {
-    EXPECT_EQ(dds::certificate_digits("server"), "91d177d5d766");
+    EXPECT_EQ(dds::certificate_digits("host"), "91d177d5d766");
     EXPECT_EQ(dds::certificate_digits("c1"), "cf35ace75f00");
     EXPECT_EQ(dds::certificate_digits("c2"), "f1f15a6b74a2");
 }

@@ -64,9 +64,9 @@ TEST(NetworkSecurity, a_network_is_not_joined_without_keys_unless_that_is_asked_
     const auto refused = dds::Domain::join({5, NetworkSecurity{}});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().text,
-              "CYCLONEDDS_URI names a network, where anyone may take part: --security DIR gives "
-              "this program keys, --plain goes on without");
-    // Whether there is an eth0 Cyclone says.
+              "CYCLONEDDS_URI names a network, and every program there can take part: use "
+              "--security DIR for keys, or --plain to continue without");
+    // Cyclone checks the presence of eth0.
     for (const auto& choice : {dds::DomainChoice{5, {"", true}}, dds::DomainChoice{5}})
     {
         const auto joined = dds::Domain::join(choice);
