@@ -252,6 +252,18 @@ Result<Domain, Refusal> Domain::join(const DomainChoice& choice, Party party)
     return domain;
 }
 
+void Domain::be_silent(std::chrono::seconds length) const
+{
+    log_message(LogLevel::warning, "dds",
+                fmt::format("a server is present on domain {}, but its handshake does not end: "
+                            "silent for {} s, so that both sides begin again",
+                            id_, length.count()));
+    constexpr bool kDeaf = true;
+    constexpr bool kMute = true;
+    dds_domain_set_deafmute(participant_.get(), kDeaf, kMute,
+                            std::chrono::nanoseconds(length).count());
+}
+
 std::set<std::uint32_t> domains_in(std::string_view udp_sockets)
 {
     std::set<std::uint32_t> domains;

@@ -9,6 +9,7 @@
 #include "transport/dds/entity.hpp"
 #include "transport/dds/participants.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -74,6 +75,9 @@ public:
     [[nodiscard]] const std::string& certificate() const noexcept { return certificate_; }
     /// Participants on the domain, this one included.
     [[nodiscard]] Participants& participants() const noexcept { return *participants_; }
+    /// Ends all connections of this process on the domain: it neither sends nor receives for this
+    /// time, and continues then. Returns at once; logs a warning.
+    void be_silent(std::chrono::seconds length) const;
     /// Disposal for entities whose deletion must not delay the caller.
     [[nodiscard]] Disposal& disposal() const noexcept { return *disposal_; }
 

@@ -167,6 +167,16 @@ bool Participants::is_server(std::uint64_t publication_handle, std::uint64_t ser
     return writer && server_epoch_of(*writer) == server_epoch;
 }
 
+bool Participants::has_any_of(const std::set<std::string>& certificates) const
+{
+    return !certificates.empty() &&
+           std::ranges::any_of(here_,
+                               [&](const auto& participant) {
+                                   return participant.first != own_ &&
+                                          certificates.contains(certificate_of(participant.first));
+                               });
+}
+
 void Participants::refuse(std::uint64_t publication_handle, Refused reason, std::uint32_t number)
 {
     if (const auto writer = writer_of(publication_handle))

@@ -56,6 +56,10 @@ public:
     /// the hash of another subject.
     [[nodiscard]] std::string certificate_of(const ParticipantId& who) const;
 
+    /// True if another participant with one of these certificates (certificate_of()) was present at
+    /// the last report(). Its handshake need not have ended. The thread of report().
+    [[nodiscard]] bool has_any_of(const std::set<std::string>& certificates) const;
+
     /// Counts a refusal for the participant that owns this writer. `number` is that of the refused
     /// object or model.
     void refuse(std::uint64_t publication_handle, Refused reason, std::uint32_t number = 0);
