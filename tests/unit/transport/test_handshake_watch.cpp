@@ -38,9 +38,15 @@ using Silences = std::vector<std::pair<int, int>>;
 TEST(HandshakeWatch, is_silent_after_its_patience_with_growing_pauses)
 {
     HandshakeWatch watch;
-    EXPECT_EQ(
-        silences(watch, 0, 200, false, true),
-        (Silences{{5, 3}, {11, 6}, {17, 9}, {23, 12}, {31, 12}, {47, 12}, {79, 12}, {139, 12}}));
+    EXPECT_EQ(silences(watch, 0, 200, false, true), (Silences{{5, 3},
+                                                              {11, 6},
+                                                              {17, 9},
+                                                              {23, 12},
+                                                              {31, 12},
+                                                              {47, 12},
+                                                              {79, 12},
+                                                              {139, 12},
+                                                              {199, 12}}));
 }
 
 TEST(HandshakeWatch, has_no_cause_without_a_server_or_with_a_connected_one)
