@@ -182,8 +182,8 @@ endif()
 tactus_component(transport
     NEEDS core
     MODULES tactus_content_hash tactus_transport tactus_store tactus_topic_types tactus_dds
-    LINK_PRIVATE sodium fmt::fmt CycloneDDS::ddsc
-    PC_REQUIRES_PRIVATE libsodium fmt CycloneDDS
+    LINK_PRIVATE sodium fmt::fmt CycloneDDS::ddsc crypto
+    PC_REQUIRES_PRIVATE libsodium fmt CycloneDDS libcrypto
     PUBLIC
         transport/chunk_link.hpp
         transport/content_hash.hpp

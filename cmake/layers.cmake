@@ -175,6 +175,8 @@ tactus_module(host_tools/spm_inspect ${host_layer} platform/program host_tools/m
 # The program that serves models and scenes.
 tactus_module(host_tools/spm_publish ${host_layer} platform/program host_tools/mesh
     host_tools/scene host_tools/web)
+# The program that makes the keys of a site.
+tactus_module(host_tools/keys ${host_layer} platform/program)
 # The program that shows a run in a browser; it plays recordings, too.
 tactus_module(host_tools/spm_view ${host_layer} platform/program host_tools/mesh host_tools/encode
     host_tools/web platform/recording)
@@ -184,6 +186,8 @@ tactus_module(tests *)
 
 # --- Libraries of others.
 tactus_external(dds transport/dds tests)
+# Certificates and signatures of DDS Security.
+tactus_external(openssl transport/dds host_tools/keys tests)
 tactus_external(ccd rt_core/query tests)
 tactus_external(Eigen rt_core platform transport host_tools tests)
 tactus_external(CLI platform/program)

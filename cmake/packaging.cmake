@@ -95,7 +95,7 @@ platform, encoder and the interface for C.")
 tactus_package(libtactus-dev
     SECTION libdevel
     DEPENDS "libtactus0 (= ${PROJECT_VERSION})" "libeigen3-dev (>= 3.4)" libccd-dev
-        libfmt-dev libsodium-dev cyclonedds-dev
+        libfmt-dev libsodium-dev libssl-dev cyclonedds-dev
     SUGGESTS tactus-doc
     DESCRIPTION "haptic touch of huge triangle meshes - development files
 Tactus lets a hand feel triangle meshes that are larger than the memory of
@@ -114,7 +114,8 @@ the machine that computes the force.
 .
 spm_build turns meshes into models, spm_inspect checks and shows them,
 spm_publish serves them to controllers over DDS, spm_view shows in a browser
-what controllers touch, both as services if wanted. They are not enabled:
+what controllers touch, both as services if wanted; tactus-keys makes the keys
+of DDS Security. The services are not enabled:
 /etc/default/spm_publish first says what to serve.")
 tactus_package(tactus-controller
     SECTION science

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 //
-// A device of one's own, for `hrtc --device plugin:libmy_device.so,HEIGHT`: here a handle on a rail
+// A device of one's own, for `hrtc --device plugin:FILE,HEIGHT`: here a handle on a rail
 // along z, that somebody draws up and down by HEIGHT metres twice in 4 s, and that gives way to the
 // force by 1 mm a newton. Where it is computed, a real one asks its hardware.
 #include <array>

@@ -367,8 +367,9 @@ int run(int argc, char** argv)
     ServingReport report;
     const Log warn = [&report](const std::string& text)
     { report.print_line(text, LogLevel::warning); };
-    auto server = dds::DdsServer::create(options.domain, std::move(models).value(), warn,
-                                         options.scene, dds::Party::both);
+    auto server =
+        dds::DdsServer::create({options.domain, options.security}, std::move(models).value(), warn,
+                               options.scene, dds::Party::both);
     if (!server)
     {
         return line.fail(server.error().text);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/result.hpp"
+#include "transport/base/network_security.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <cstdint>
@@ -29,6 +30,7 @@ struct Options
     std::vector<std::string> names;
     std::string scene; ///< Name of the scene; empty: none.
     std::uint32_t domain{0};
+    NetworkSecurity security;
     std::optional<double> seconds;
     std::string poses_path; ///< Pose file; empty: none.
     bool poses_loop{false};

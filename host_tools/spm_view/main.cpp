@@ -141,7 +141,7 @@ Result<std::unique_ptr<WebServer>, Refusal> serve(const WebServer::Parts& parts,
 
 int show_live(const CommandLine& line, const Options& options, ModelShelf& shelf)
 {
-    const auto domain = dds::Domain::join(options.domain, dds::Party::both);
+    const auto domain = dds::Domain::join({options.domain, options.security}, dds::Party::both);
     if (!domain)
     {
         return line.fail(domain.error().text);

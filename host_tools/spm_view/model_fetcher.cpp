@@ -35,7 +35,7 @@ constexpr std::chrono::milliseconds kAgain{100};
 constexpr std::chrono::milliseconds kPatience{1'500};
 /// Maximum number of pieces in one request.
 constexpr std::size_t kPiecesAtOnce = 256;
-/// Name under which servers show the viewer.
+/// Name under which servers show the viewer if it has no keys.
 constexpr const char* kName = "spm_view";
 
 struct KeyOrder
@@ -227,7 +227,8 @@ Result<std::unique_ptr<ModelFetcher>, Refusal> ModelFetcher::create(const dds::D
     }
     std::unique_ptr<ModelFetcher> fetcher(
         new ModelFetcher(std::move(catalogue).value(), shelf, std::move(log)));
-    auto exchange = dds::PieceExchange::create(domain, fetcher->catalogue_, kName);
+    auto exchange = dds::PieceExchange::create(
+        domain, fetcher->catalogue_, domain.certificate().empty() ? kName : domain.certificate());
     if (!exchange)
     {
         return exchange.error();

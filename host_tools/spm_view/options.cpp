@@ -24,6 +24,7 @@ void declare_options(CommandLine& line, Options& options)
     const auto domain = line.add_option("--domain", options.domain, "DDS domain")
                             .integer_between(std::uint32_t{0}, dds::kMaxDomain)
                             .show_default();
+    line.add_security_options(options.security);
     line.begin_task("Play a recording, or compare two",
                     "spm_view --replay run.rec --replay again.rec");
     line.add_option("--replay", options.recordings,

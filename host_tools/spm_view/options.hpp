@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "transport/base/network_security.hpp"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,6 +25,7 @@ struct Options
     std::vector<std::string> recordings; ///< At most two recordings; none: live data are shown.
     std::uint32_t port{7'300};
     std::uint32_t domain{0};
+    NetworkSecurity security;
     std::optional<double> seconds;
 };
 

@@ -153,7 +153,7 @@ std::optional<DeviceChoice> device_named(std::string_view text)
         choice.recording = text.substr(kReplay.size());
         return choice;
     }
-    if (text.starts_with(kPlugin) && text.size() > kPlugin.size() && text[kPlugin.size()] != ',')
+    if (text.starts_with(kPlugin) && text.substr(kPlugin.size()).starts_with('/'))
     {
         const std::size_t comma = std::min(text.find(','), text.size());
         choice.kind = DeviceKind::plugin;
@@ -173,7 +173,8 @@ Refusal no_device(std::string_view text)
         {"udp", "udp, udp:PORT, or udp:ADDRESS:PORT with a numeric IPv4 address and a port of 1024 "
                 "to 65535"},
         {"dhd", "dhd, or dhd:INDEX with 0 to 63"},
-        {"plugin", "plugin:FILE[,WORDS] with a library that has a TACTUS_DEVICE_PLUGIN"},
+        {"plugin",
+         "plugin:FILE[,WORDS] with the full path of a library that has a TACTUS_DEVICE_PLUGIN"},
         {"replay", "replay:FILE with a recording of hrtc --record"}};
     for (const auto& [kind, forms] : kForms)
     {

@@ -13,6 +13,7 @@
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/prediction.hpp"
+#include "transport/base/network_security.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>
@@ -78,6 +79,7 @@ struct Options
     std::vector<DeviceFault> device_faults; ///< Faults of every simulated device.
     TransportKind transport{TransportKind::dds};
     std::uint32_t domain{0};
+    NetworkSecurity security; ///< Keys, or the choice to join a network without.
     /// True if viewers of that domain can watch, also with models from files.
     bool is_watched{false};
     std::string name;                  ///< Name of the controller, with DDS; empty: hrtc-PID.

@@ -268,10 +268,11 @@ std::optional<Refusal> Session::connect()
 {
     if (options_.is_watched)
     {
+        const bool has_keys = !options_.security.keys.empty();
         const std::string name =
-            options_.name.empty() ? fmt::format("hrtc-{}", getpid()) : options_.name;
-        auto client = dds::DdsClient::create(options_.domain, name, log_line);
-        if (!client && options_.transport == TransportKind::file)
+            options_.name.empty() && !has_keys ? fmt::format("hrtc-{}", getpid()) : options_.name;
+        auto client = dds::DdsClient::create({options_.domain, options_.security}, name, log_line);
+        if (!client && options_.transport == TransportKind::file && !has_keys)
         {
             log_line(client.error().text + "; viewers can't see the run");
             return std::nullopt;

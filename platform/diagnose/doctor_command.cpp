@@ -54,6 +54,8 @@ int run_doctor(int argc, char** argv)
                         "DDS domain to check as well, with its participants and published models "
                         "[default: none]")
             .integer_between(0U, dds::kMaxDomain);
+    NetworkSecurity security;
+    line.add_security_options(security);
     line.add_option("--wait", wait_s, "Time to listen in that domain, in seconds")
         .number_between(0.1, 3'600.0)
         .show_default()
@@ -73,8 +75,9 @@ int run_doctor(int argc, char** argv)
     std::vector<doctor::Finding> findings = doctor::examine({files, measured, cpu});
     if (domain)
     {
-        findings.push_back(check_domain(
-            *domain, std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3))));
+        findings.push_back(
+            check_domain({*domain, security},
+                         std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3))));
     }
     fmt::print("{}", as_json ? doctor::make_report(findings, cpu).dump(2) + '\n'
                              : doctor::make_text(findings, shows_good));

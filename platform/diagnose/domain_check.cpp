@@ -4,11 +4,11 @@
 
 #include "transport/base/printable.hpp"
 #include "transport/dds/catalogue.hpp"
-#include "transport/dds/domain.hpp"
 
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <thread>
@@ -50,9 +50,10 @@ std::string joined_names(const std::set<std::string>& names)
 
 } // namespace
 
-doctor::Finding check_domain(std::uint32_t domain, std::chrono::milliseconds wait)
+doctor::Finding check_domain(const dds::DomainChoice& choice, std::chrono::milliseconds wait)
 {
-    auto joined = dds::Domain::join(domain, dds::Party::controller);
+    const std::uint32_t domain = choice.id;
+    auto joined = dds::Domain::join(choice, dds::Party::controller);
     if (!joined)
     {
         return not_joined(joined.error());

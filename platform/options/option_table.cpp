@@ -211,15 +211,18 @@ void declare_transport(CommandLine& line, Options& options, RawOptions& raw)
                     "viewers (spm_view) in that domain")
         .integer_between(kDomainRange.low, kDomainRange.high)
         .show_default();
+    line.add_security_options(options.security);
     line.add_option("--name", options.name,
                     "Name of the controller with DDS (1 to 63 bytes of letters, digits, . _ -). "
-                    "Servers show the name, and access rights can refer to it [default: hrtc-PID]");
+                    "Servers show the name, and access rights can refer to it [default: hrtc-PID; "
+                    "with --security, the name of the certificate]");
     line.add_option(
             "--failover", raw.failover,
             "Server that may replace the first server if that one is lost: MACHINE or "
-            "MACHINE:PROCESS, or with DDS Security the certificate, cert:HEX, as in NAME@SERVER, "
-            "log lines and reports. The value any allows every server of the same models. "
-            "Repeatable [default: none; with DDS Security, a server with the same certificate]")
+            "MACHINE:PROCESS, or with DDS Security the certificate, its name or cert:HEX, as in "
+            "NAME@SERVER, log lines and reports. The value any allows every server of the same "
+            "models. Repeatable [default: none; with DDS Security, a server with the same "
+            "certificate]")
         .repeatable();
     line.add_flag("--ignore-poses", raw.ignores_poses,
                   "Keep the objects at their start poses from --place or --scene; ignore the poses "

@@ -40,7 +40,7 @@ constexpr ToolOption kOptions[kToolOptions] = {
      "Device that moves the tool: sim[:CLASS], a simulated operator on a device of the class "
      "touch, omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of "
      "Force Dimension; replay:FILE, the device of a recording; plugin:FILE[,WORDS], a library of "
-     "your own [default: sim]",
+     "your own by its full path [default: sim]",
      set_tool_device},
     {"device-limits", "--device-limits",
      "Properties of a sim or dhd device, which does not report them: KEY=VALUE with commas "

@@ -485,6 +485,18 @@ void CommandLine::add_former_name(const std::string& former, const std::string& 
     former_names_.emplace(former, name);
 }
 
+void CommandLine::add_security_options(NetworkSecurity& security)
+{
+    const CommandOption keys =
+        add_option("--security", security.keys,
+                   "Folder of keys that tactus-keys made: the domain is joined with DDS Security, "
+                   "authenticated and encrypted [default: none]");
+    add_flag("--plain", security.is_plain,
+             "Join a network of CYCLONEDDS_URI without --security; every program on that network "
+             "can take part")
+        .excludes(keys);
+}
+
 void CommandLine::begin_task(const std::string& task, const std::string& example)
 {
     app_->option_defaults()->group(task);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "transport/base/exit_codes.hpp"
+#include "transport/base/network_security.hpp"
 
 #include <functional>
 #include <map>
@@ -96,6 +97,8 @@ public:
     /// Declares that the option `name` was called `former` in an older version, both without
     /// dashes. Use of the former name is wrong usage, and the message gives the new one.
     void add_former_name(const std::string& former, const std::string& name);
+    /// Adds --security and --plain, for programs that use DDS.
+    void add_security_options(NetworkSecurity& security);
     /// Begins a task, a section of --help: the options declared after this call stand in it, below
     /// the example.
     void begin_task(const std::string& task, const std::string& example);

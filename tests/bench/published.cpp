@@ -21,6 +21,10 @@ Program start_at(const NetworkEnd& end, const std::string& name,
     ProgramSetup setup;
     setup.words = {program_path(name), "--domain", fmt::format("{}", dds_domain())};
     setup.words.insert(setup.words.end(), arguments.begin(), arguments.end());
+    if (!end.dds_uri.empty())
+    {
+        setup.words.emplace_back("--plain");
+    }
     setup.network = end.network;
     setup.dds_uri = end.dds_uri;
     setup.output = folder / (name + ".log");

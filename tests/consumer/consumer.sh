@@ -215,17 +215,17 @@ if [[ "$extent" == quick ]]; then
     done
     # The device of the examples, in the loop of hrtc, moves up and down over the ring's thickness.
     cp shared/examples/libmy_device.so .
-    "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:libmy_device.so,0.03 \
+    "$build/bin/hrtc" --allow-no-rt ring.spm --device "plugin:$PWD/libmy_device.so,0.03" \
         --device-frame 0.028,0,0 --duration 4 >rail.log 2>&1 \
         || fail "with the examples' device: $(<rail.log)"
     grep -qE '^tool .* on rail, 0.03 m around' rail.log || fail "another device: $(<rail.log)"
     grep -qE '^frames +4000 .*in contact +[1-9]' rail.log || fail "it touches nothing: $(<rail.log)"
     refuses 'libmy_device.so: give its height' \
-        "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:libmy_device.so
+        "$build/bin/hrtc" --allow-no-rt ring.spm --device "plugin:$PWD/libmy_device.so"
     refuses 'is no device library: it has no TACTUS_DEVICE_PLUGIN' \
         "$build/bin/hrtc" --allow-no-rt ring.spm --device "plugin:$library/libtactus_core.so"
-    refuses "nobody.so: can't be loaded" \
-        "$build/bin/hrtc" --allow-no-rt ring.spm --device plugin:nobody.so
+    refuses "missing.so: can't be loaded" \
+        "$build/bin/hrtc" --allow-no-rt ring.spm --device "plugin:$PWD/missing.so"
     # Line of the page for pkg-config, verbatim.
     mkdir by_hand
     cp "$project/touch.cpp" by_hand

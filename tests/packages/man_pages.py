@@ -135,7 +135,7 @@ def faults_of_header(header, page):
 def main(arguments):
     programs, pages, header = (pathlib.Path(argument) for argument in arguments[:3])
     faults = list(faults_of_header(header, (pages / "tactus.h.3").read_text()))
-    for name in ("spm_build", "spm_inspect", "spm_publish", "spm_view", "hrtc"):
+    for name in ("spm_build", "spm_inspect", "spm_publish", "spm_view", "tactus-keys", "hrtc"):
         path = pages / f"{name}.1"
         page = written(programs, name, path.read_text())
         if page.count("\n.TP\n\\fB") < 5:

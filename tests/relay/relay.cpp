@@ -115,11 +115,20 @@ void Relay::follow(const Command& command)
         condition_.*set->figure = set->value;
         return;
     }
-    const bool is_cut = std::holds_alternative<Cut>(command);
-    for (Direction* direction : {&to_controller_, &to_server_})
+    if (const auto* cut = std::get_if<Cut>(&command))
     {
-        is_cut ? direction->way.cut() : direction->way.restore();
+        if (cut->to_controller)
+        {
+            to_controller_.way.cut();
+        }
+        if (cut->to_server)
+        {
+            to_server_.way.cut();
+        }
+        return;
     }
+    to_controller_.way.restore();
+    to_server_.way.restore();
 }
 
 std::string Relay::counts() const

@@ -58,6 +58,14 @@ std::optional<Command> parse_command(std::string_view line)
     {
         return Cut{};
     }
+    if (line == "cut to-controller")
+    {
+        return Cut{true, false};
+    }
+    if (line == "cut to-server")
+    {
+        return Cut{false, true};
+    }
     if (line == "restore")
     {
         return Restore{};
@@ -71,7 +79,7 @@ std::optional<Command> parse_command(std::string_view line)
 
 std::string command_forms()
 {
-    std::string forms = "cut, restore, count";
+    std::string forms = "cut, cut to-controller, cut to-server, restore, count";
     for (const Figure& figure : kFigures)
     {
         forms += fmt::format(", set {} 0..{}", figure.name, figure.most);

@@ -22,8 +22,11 @@ struct LinkCondition
     double duplicates{0.0}; ///< Share of the arriving frames that are duplicated, 0 .. 1.
 };
 
+/// Cut of one or both directions.
 struct Cut
 {
+    bool to_controller{true};
+    bool to_server{true};
 };
 struct Restore
 {
@@ -41,8 +44,8 @@ struct Set
 /// Command to a running relay.
 using Command = std::variant<Cut, Restore, Count, Set>;
 
-/// Parses a line: "cut", "restore", "count", or "set" with "delay-ms", "jitter-ms", "loss" or
-/// "duplicates" and a number in its range. Empty for any other.
+/// Parses a line: "cut", "cut to-controller", "cut to-server", "restore", "count", or "set" with
+/// "delay-ms", "jitter-ms", "loss" or "duplicates" and a number in its range. Empty for any other.
 [[nodiscard]] std::optional<Command> parse_command(std::string_view line);
 
 /// Allowed forms, for the refusal of other commands.

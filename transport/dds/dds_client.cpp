@@ -25,15 +25,24 @@ constexpr auto kQuiet = std::chrono::seconds(2);
 
 } // namespace
 
-Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(std::uint32_t domain,
+Result<std::unique_ptr<DdsClient>, Refusal> DdsClient::create(const DomainChoice& domain,
                                                               std::string controller_name, Log log)
 {
-    TACTUS_ASSERT(is_valid_name(controller_name));
     auto joined = Domain::join(domain, Party::controller);
     if (!joined)
     {
         return joined.error();
     }
+    if (const std::string& certified = joined.value().certificate(); !certified.empty())
+    {
+        if (!controller_name.empty() && controller_name != certified)
+        {
+            return Refusal{fmt::format("--name: '{}' can't be shown with the keys of '{}'",
+                                       controller_name, certified)};
+        }
+        controller_name = certified;
+    }
+    TACTUS_ASSERT(is_valid_name(controller_name));
     auto catalogue = Catalogue::create(joined.value(), log);
     if (!catalogue)
     {

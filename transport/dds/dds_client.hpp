@@ -28,10 +28,10 @@ class DdsClient
 {
 public:
     /// Joins the domain, with the refusals of Domain::join(). Servers show `controller_name`, which
-    /// must be valid (asserted). Call it on an ordinary thread, and after a server of the same
-    /// process joined.
+    /// must be valid (asserted); with keys it is the certificate's name and may be empty. Call it
+    /// on an ordinary thread, and after a server of the same process joined.
     [[nodiscard]] static Result<std::unique_ptr<DdsClient>, Refusal>
-    create(std::uint32_t domain, std::string controller_name, Log log);
+    create(const DomainChoice& domain, std::string controller_name, Log log);
 
     /// Waits until all these models are published and their verified headers have arrived, each
     /// from the first of its servers that answers. Returns the models in the order of the

@@ -62,7 +62,7 @@ std::string name_of(const tactus_v5_Wanted& wanted)
 
 } // namespace
 
-Result<std::unique_ptr<DdsServer>, Refusal> DdsServer::create(std::uint32_t domain,
+Result<std::unique_ptr<DdsServer>, Refusal> DdsServer::create(const DomainChoice& domain,
                                                               std::vector<PublishedModel> models,
                                                               Log log, std::string scene,
                                                               Party party)

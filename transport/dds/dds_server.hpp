@@ -50,7 +50,7 @@ public:
     /// each controller that arrives or leaves, each failure and each refusal. `scene` is a valid
     /// name (unchecked) for all objects of the server together; empty: no scene.
     [[nodiscard]] static Result<std::unique_ptr<DdsServer>, Refusal>
-    create(std::uint32_t domain, std::vector<PublishedModel> models, Log log,
+    create(const DomainChoice& domain, std::vector<PublishedModel> models, Log log,
            std::string scene = {}, Party party = Party::server);
 
     /// Waits for a request or the next step() that is due, at most `timeout`. Signals do not end

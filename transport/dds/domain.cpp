@@ -5,6 +5,7 @@
 #include "transport/base/printable.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/dds/loopback_sockets.hpp"
+#include "transport/dds/security.hpp"
 #include "transport/log.hpp"
 
 #include <dds/dds.h>
@@ -15,6 +16,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -53,6 +55,7 @@ constexpr const char* kConfiguration = R"(<CycloneDDS><Domain id="any">
   <Thread name="dq.user"><StackSize>512 kB</StackSize></Thread>
   <Thread name="dq.builtins"><StackSize>512 kB</StackSize></Thread>
   <Thread name="tev"><StackSize>512 kB</StackSize></Thread>
+  <Thread name="fsm"><StackSize>512 kB</StackSize></Thread>
   <Thread name="gc"><StackSize>256 kB</StackSize></Thread>
 </Threads>
 </Domain></CycloneDDS>)";
@@ -139,10 +142,15 @@ std::shared_ptr<Entity> configured_domain(std::uint32_t id, Party party)
     return known.party == Party::controller && party != Party::controller ? nullptr : domain;
 }
 
-bool has_configuration_of_user()
+std::string configuration_of_user()
 {
     const char* uri = std::getenv("CYCLONEDDS_URI");
-    return uri != nullptr && *uri != '\0';
+    return uri == nullptr ? "" : uri;
+}
+
+bool has_configuration_of_user()
+{
+    return !configuration_of_user().empty();
 }
 
 Refusal join_error(std::uint32_t id, std::int32_t code)
@@ -161,13 +169,61 @@ Refusal join_error(std::uint32_t id, std::int32_t code)
                         reason.empty() ? dds_strretcode(code) : reason, more)};
 }
 
+/// Time before the end of the keys with a warning at the start.
+constexpr std::time_t kSoon_s = 30 * 24 * 3'600;
+
+/// The keys of the choice; none if the domain is joined without.
+Result<std::optional<KeyFolder>, Refusal> take_keys(const DomainChoice& choice)
+{
+    const NetworkSecurity& security = choice.security;
+    if (security.keys.empty())
+    {
+        if (!security.is_plain && is_open_to_network(configuration_of_user()))
+        {
+            return Refusal{
+                "CYCLONEDDS_URI names a network, and every program there can take part: use "
+                "--security DIR for keys, or --plain to continue without"};
+        }
+        return std::optional<KeyFolder>();
+    }
+    const std::time_t now = std::time(nullptr);
+    auto keys = read_key_folder(security.keys, choice.id, now);
+    if (!keys)
+    {
+        return keys.error();
+    }
+    if (const std::time_t left_s = keys.value().valid_until - now; left_s < kSoon_s)
+    {
+        log_message(LogLevel::warning, "dds",
+                    fmt::format("the keys of '{}' end in {} days: renew them with tactus-keys",
+                                keys.value().name, left_s / (24 * 3'600)));
+    }
+    return std::optional(std::move(keys).value());
+}
+
+Entity make_participant(std::uint32_t id, const std::optional<KeyFolder>& keys)
+{
+    const std::unique_ptr<dds_qos, void (*)(dds_qos*)> qos(dds_create_qos(), dds_delete_qos);
+    if (keys)
+    {
+        protect(qos.get(), *keys);
+    }
+    return Entity(dds_create_participant(id, qos.get(), nullptr));
+}
+
 } // namespace
 
-Result<Domain, Refusal> Domain::join(std::uint32_t id, Party party)
+Result<Domain, Refusal> Domain::join(const DomainChoice& choice, Party party)
 {
+    const std::uint32_t id = choice.id;
     if (id > kMaxDomain)
     {
         return Refusal{fmt::format("DDS domain {} is not in 0 to {}", id, kMaxDomain)};
+    }
+    const auto keys = take_keys(choice);
+    if (!keys)
+    {
+        return keys.error();
     }
     dds_set_log_sink(&MessageSink::on_message, nullptr);
     Domain domain;
@@ -186,13 +242,26 @@ Result<Domain, Refusal> Domain::join(std::uint32_t id, Party party)
             return join_error(id, domain.configuration_->get());
         }
     }
-    domain.participant_ = Entity(dds_create_participant(id, nullptr, nullptr));
+    domain.participant_ = make_participant(id, keys.value());
+    domain.certificate_ = keys.value() ? keys.value()->name : "";
     if (!domain.participant_.is_valid())
     {
         return join_error(id, domain.participant_.get());
     }
     domain.participants_ = std::make_unique<Participants>(domain.participant_.get());
     return domain;
+}
+
+void Domain::be_silent(std::chrono::seconds length) const
+{
+    log_message(LogLevel::warning, "dds",
+                fmt::format("a server is present on domain {}, but its handshake does not end: "
+                            "silent for {} s, so that both sides begin again",
+                            id_, length.count()));
+    constexpr bool kDeaf = true;
+    constexpr bool kMute = true;
+    dds_domain_set_deafmute(participant_.get(), kDeaf, kMute,
+                            std::chrono::nanoseconds(length).count());
 }
 
 std::set<std::uint32_t> domains_in(std::string_view udp_sockets)

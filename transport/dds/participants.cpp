@@ -4,6 +4,7 @@
 
 #include "transport/base/printable.hpp"
 #include "transport/content_hash.hpp"
+#include "transport/dds/key_folder.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/dds/topics.hpp"
 
@@ -32,6 +33,12 @@ ParticipantId id_of(const dds_guid_t& guid)
     ParticipantId id{};
     std::memcpy(id.data(), static_cast<const std::uint8_t*>(guid.v), id.size());
     return id;
+}
+
+/// True with DDS Security: without, a GUID begins with the vendor's 01.
+bool is_certified(const ParticipantId& participant)
+{
+    return (participant[0] & 0x80U) != 0;
 }
 
 /// Takes changes from the built-in reader `news`: calls `visit(sample)` for present entities and
@@ -158,6 +165,16 @@ bool Participants::is_server(std::uint64_t publication_handle, std::uint64_t ser
 {
     const auto writer = writer_of(publication_handle);
     return writer && server_epoch_of(*writer) == server_epoch;
+}
+
+bool Participants::has_any_of(const std::set<std::string>& certificates) const
+{
+    return !certificates.empty() &&
+           std::ranges::any_of(here_,
+                               [&](const auto& participant) {
+                                   return participant.first != own_ &&
+                                          certificates.contains(certificate_of(participant.first));
+                               });
 }
 
 void Participants::refuse(std::uint64_t publication_handle, Refused reason, std::uint32_t number)
@@ -315,6 +332,10 @@ bool Participants::is_called(const ParticipantId& who, const std::string& server
         const std::string certificate = certificate_of(who);
         return !certificate.empty() && server.substr(kCertificate.size()) == certificate;
     }
+    if (is_protected()) // What a machine says of itself would be a claim.
+    {
+        return certificate_of(who) == certificate_digits(server);
+    }
     bool is_it = false;
     read_participant(
         participants_, who,
@@ -326,11 +347,15 @@ bool Participants::is_called(const ParticipantId& who, const std::string& server
     return is_it;
 }
 
+bool Participants::is_protected() const
+{
+    return is_certified(own_);
+}
+
 std::string Participants::certificate_of(const ParticipantId& who) const
 {
-    constexpr std::uint8_t kSecured = 0x80; // Without security a GUID begins with 0x01, the vendor.
     constexpr std::size_t kBytes = 6;
-    if ((own_[0] & kSecured) == 0 || (who[0] & kSecured) == 0)
+    if (!is_protected() || !is_certified(who))
     {
         return {};
     }

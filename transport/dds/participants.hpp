@@ -48,12 +48,17 @@ public:
     /// Program, process and machine as reported by the participant. With DDS Security also its
     /// certificate_of(), which no other participant can claim. 10 us.
     [[nodiscard]] std::string name_of(const ParticipantId& who) const;
-    /// True if `server`, a text that passes is_valid_server(), names the participant. 10 us.
+    /// True if `server`, a text that passes is_valid_server(), names the participant: cert:HEX,
+    /// MACHINE or MACHINE:PROCESS, or with DDS Security the name of its certificate. 10 us.
     [[nodiscard]] bool is_called(const ParticipantId& who, const std::string& server) const;
     /// With DDS Security 12 hexadecimal digits, a hash of the subject of the certificate; otherwise
     /// empty. The hash begins the GUID; the authentication plugin refuses a GUID that begins with
     /// the hash of another subject.
     [[nodiscard]] std::string certificate_of(const ParticipantId& who) const;
+
+    /// True if another participant with one of these certificates (certificate_of()) was present at
+    /// the last report(). Its handshake need not have ended. The thread of report().
+    [[nodiscard]] bool has_any_of(const std::set<std::string>& certificates) const;
 
     /// Counts a refusal for the participant that owns this writer. `number` is that of the refused
     /// object or model.
@@ -82,6 +87,7 @@ private:
 
     void report_other_versions(RateLimitedLog& log);
     void report_crowds(RateLimitedLog& log);
+    [[nodiscard]] bool is_protected() const;
     void forget_participant(const ParticipantId& who);
 
     /// Readers of DDS's built-in topics of writers and participants; deleted with the participant.

@@ -54,7 +54,8 @@ PieceExchange::create(const Domain& domain, Catalogue& catalogue, std::string co
 
 PieceExchange::PieceExchange(const Domain& domain, Catalogue& catalogue,
                              std::string controller_name)
-    : catalogue_(catalogue)
+    : domain_(domain)
+    , catalogue_(catalogue)
     , controller_name_(std::move(controller_name))
     , controller_(domain.participants().own())
 {
@@ -109,6 +110,7 @@ void PieceExchange::step()
 {
     ++steps_;
     catalogue_.refresh();
+    watch_handshakes();
     if (catalogue_.version() != seen_catalogue_)
     {
         seen_catalogue_ = catalogue_.version();
@@ -144,6 +146,30 @@ PieceExchange::Server& PieceExchange::server_of(std::uint64_t epoch)
     }
     servers_.emplace_back().epoch = epoch;
     return servers_.back();
+}
+
+/// Restarts handshakes that never end, while no server is connected: a silence would end the other
+/// connections too.
+void PieceExchange::watch_handshakes()
+{
+    constexpr std::chrono::milliseconds kInterval(500);
+    const auto now = Clock::now();
+    const Participants& participants = catalogue_.participants();
+    if (now < next_watch_ || participants.certificate_of(participants.own()).empty())
+    {
+        return;
+    }
+    next_watch_ = now + kInterval;
+    const auto servers = catalogue_.servers_of({});
+    for (const Catalogue::Offer* offer : servers)
+    {
+        certificates_.insert(participants.certificate_of(offer->server));
+    }
+    const bool is_discovered = servers.empty() && participants.has_any_of(certificates_);
+    if (const auto silence = handshakes_.step(now, !servers.empty(), is_discovered))
+    {
+        domain_.be_silent(*silence);
+    }
 }
 
 void PieceExchange::forget_servers()

@@ -7,6 +7,7 @@
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/credit.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/handshake_watch.hpp"
 #include "transport/dds/request_queue.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/dds/writer_lanes.hpp"
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -108,12 +110,14 @@ private:
 
     [[nodiscard]] Server* find(std::uint64_t epoch);
     [[nodiscard]] Server& server_of(std::uint64_t epoch);
+    void watch_handshakes();
     void forget_servers();
     void take_pieces();
     void hand_over(std::span<const std::byte> payload, Server& server, std::uint64_t sent);
     void keep_credit(Server& server);
     void send(Server& server);
 
+    const Domain& domain_;
     Catalogue& catalogue_;
     std::string controller_name_;
     ControllerId controller_;
@@ -125,6 +129,9 @@ private:
     std::vector<Server> servers_;
     std::uint64_t seen_catalogue_{0};
     std::uint64_t steps_{0};
+    std::set<std::string> certificates_; ///< Certificates of connected servers, now or before.
+    HandshakeWatch handshakes_;
+    Clock::time_point next_watch_{};
 };
 
 } // namespace tactus::dds

@@ -48,8 +48,11 @@ Refusal behind(const std::string& path, const std::string& text)
 
 Result<const DevicePlugin*, Refusal> load_plugin(const std::string& path)
 {
-    const bool has_folder = path.find('/') != std::string::npos;
-    void* library = dlopen((has_folder ? path : "./" + path).c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!path.starts_with('/'))
+    {
+        return behind(path, "give the full path of the library");
+    }
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr)
     {
         const char* reason = dlerror();

@@ -50,10 +50,10 @@ struct DevicePlugin
     MakeGuard guard{nullptr}; ///< Null: the hardware ends the force of a dead program by itself.
 };
 
-/// Loads the library for the life of the process, and makes its device. A path without a folder is
-/// in the working directory. Refuses a library that can't be loaded, has another layout, refuses,
-/// returns null, throws, or describes a device with a fault (find_fault()). The refusal is one line
-/// that names the file.
+/// Loads the library for the life of the process, and makes its device. Refuses a path that does
+/// not begin with '/', and a library that can't be loaded, has another layout, refuses, returns
+/// null, throws, or describes a device with a fault (find_fault()). The refusal is one line that
+/// names the file.
 [[nodiscard]] Result<std::unique_ptr<HapticDevice>, Refusal>
 load_device(const std::string& path, const DeviceRequest& request);
 

@@ -5,6 +5,7 @@
 # that is removed at the end together with every process that was started here.
 set -euo pipefail
 readonly build=$1/spm_build inspect=$1/spm_inspect publish=$1/spm_publish hrtc=$1/hrtc
+readonly keys=$1/tactus-keys
 readonly check_report=$2 sanitizer=${3#none}
 # A separate domain on loopback: no foreign models, and none of ours on a real interface.
 readonly domain=${TACTUS_TEST_DOMAIN:-$(($$ % 231))}
@@ -12,6 +13,9 @@ unset CYCLONEDDS_URI
 # Prefixes that start the programs of either side, set by two_networks.sh.
 on_server=()
 on_controller=()
+# Options of security of either side, set by use_keys or two_networks.sh.
+server_security=()
+controller_security=()
 
 scratch=$(mktemp -d)
 started=() # Ids of the background processes.
@@ -139,11 +143,29 @@ sleeps_of() {
 # wait_for_more ID [SLEEPS]: lets that process continue for this time, an hrtc for a second.
 wait_for_more() { wait_for_sleeps $(($(sleeps_of "$1") + ${2:-3000})) "$1"; }
 
+# skip_without_plugins: ends the script where Cyclone DDS has no plugins of DDS Security.
+skip_without_plugins() {
+    [[ -z "$(find /usr/lib -name libdds_security_auth.so -print -quit)" ]] || return 0
+    echo 'skipped: Cyclone DDS is here without its security plugins'
+    exit 77
+}
+
+# use_keys: programs started after this call have keys: servers are `station`, controllers `hand-1`.
+# Keys of `hand-2` and of `desk`, a viewer, lie beside them in machines/.
+use_keys() {
+    skip_without_plugins
+    "$keys" --domain "$domain" --servers station --controllers hand-1 hand-2 --viewers desk \
+        >keys.log 2>&1 || fail "the keys: $(cat keys.log)"
+    server_security=(--security "$PWD/machines/station")
+    controller_security=(--security "$PWD/machines/hand-1")
+}
+
 # start_publisher ARGUMENT...: returns when it is ready; its id is in $publisher, its output in
 # publish.log.
 start_publisher() {
     : >publish.log
-    "${on_server[@]}" "$publish" --domain "$domain" "$@" >publish.log 2>&1 &
+    "${on_server[@]}" "$publish" --domain "$domain" "${server_security[@]}" "$@" \
+        >publish.log 2>&1 &
     publisher=$!
     started+=("$publisher")
     wait_for_line publish.log 'ready on DDS domain'
@@ -164,7 +186,8 @@ stop_publisher() {
 # start_hrtc ARGUMENT...: starts it in the background; its id is in $controller, its output in
 # hrtc.log.
 start_hrtc() {
-    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" "$@" >hrtc.log 2>&1 &
+    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" \
+        "${controller_security[@]}" "$@" >hrtc.log 2>&1 &
     controller=$!
     started+=("$controller")
 }

@@ -27,7 +27,7 @@ refuse_file cut.spm "has $((bytes - 1)) bytes, but its header states $bytes: the
 refuse 2 'no?where.spm: cannot be opened' --transport file --model $'no\nwhere.spm'
 refuse 2 'missing.gltf: no such file' missing.gltf
 refuse 2 'missing.rec: cannot be opened' good.spm --device replay:missing.rec
-refuse 2 'missing.so' good.spm --device plugin:./missing.so
+refuse 2 'missing.so' good.spm --device "plugin:$PWD/missing.so"
 refuse 2 "--motion: no object is called 'cow'; there are good" good.spm --motion tap:cow
 refuse 2 '--pool-mib: 0.25 MiB is too small for 1 model; at least 0.38 MiB is needed' good.spm \
     --pool-mib 0.25

@@ -72,7 +72,8 @@ for uri in "file://$scratch/missing.xml" \
     ((ended_with == 1)) || fault "doctor with $uri ended with $ended_with"
     grep -q '^critical  *dds-' configured.txt || fault "no word about $uri"
     code=0
-    "$hrtc" --allow-no-rt --model bumpy --domain "$domain" --wait 1 >hrtc.log 2>&1 || code=$?
+    "$hrtc" --allow-no-rt --plain --model bumpy --domain "$domain" --wait 1 >hrtc.log 2>&1 \
+        || code=$?
     if ((code != 2)) || ! grep -q 'cannot be joined' hrtc.log; then
         cat hrtc.log
         fault "hrtc itself ended with $code"

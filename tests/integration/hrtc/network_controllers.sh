@@ -8,7 +8,8 @@ readonly kills=3
 
 # start_controller NAME ARGUMENT...: its output is in NAME.log, its id in $controller.
 start_controller() {
-    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --model large \
+    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" \
+        "${controller_security[@]}" --model large \
         --device sim:touch --pool-mib 2 --duration 600 --name "$@" >"$1.log" 2>&1 &
     controller=$!
     started+=("$controller")

@@ -14,7 +14,8 @@ awk 'BEGIN {
 # start_controller NAME: starts a controller of that name; its output is in NAME.log, its id in
 # $controller.
 start_controller() {
-    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --scene shared --failover any \
+    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" \
+        "${controller_security[@]}" --scene shared --failover any \
         --name "$1" --device sim:touch --duration 600 --wait "$patience_s" \
         --report "$1.json" >"$1.log" 2>&1 &
     controller=$!

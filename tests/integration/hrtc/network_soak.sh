@@ -41,7 +41,8 @@ has_no_more() {
 short_controller() {
     local controller signal=TERM
     (($1 % 2 == 0)) || signal=KILL
-    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" --model large \
+    "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" \
+        "${controller_security[@]}" --model large \
         --device sim:touch --pool-mib 2 --duration 60 >controller.log 2>&1 &
     controller=$!
     started+=("$controller")

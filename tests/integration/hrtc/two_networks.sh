@@ -33,6 +33,9 @@ start_relay() {
     # Both exec the started program, so that its id is that of the process.
     on_server=(nsenter "--net=/proc/$relay/fd/${part[1]}" env "CYCLONEDDS_URI=${part[2]}")
     on_controller=(nsenter "--net=/proc/$relay/fd/${part[3]}" env "CYCLONEDDS_URI=${part[4]}")
+    server_security=(--plain)
+    controller_security=(--plain)
+    [[ -z "${TACTUS_TEST_SECURED:-}" ]] || use_keys
 }
 
 in_server_network() { "${on_server[@]}" "$@"; }

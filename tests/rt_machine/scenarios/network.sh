@@ -19,9 +19,9 @@ for side in host controller; do
     address=$((address + 10))
 done
 CYCLONEDDS_URI=file:///rt_machine/host.xml ip netns exec host \
-    spm_publish /var/lib/tactus/bumpy.spm >publish.log 2>&1 &
+    spm_publish /var/lib/tactus/bumpy.spm --plain >publish.log 2>&1 &
 CYCLONEDDS_URI=file:///rt_machine/controller.xml ip netns exec controller \
-    hrtc --model bumpy --duration "$1" --report kept/report.json
+    hrtc --model bumpy --plain --duration "$1" --report kept/report.json
 for side in host controller; do
     ip netns exec "$side" tc -s qdisc show | grep -A 1 netem
 done

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/keys/options.hpp"
 #include "host_tools/spm_build/options.hpp"
 #include "host_tools/spm_inspect/options.hpp"
 #include "host_tools/spm_publish/options.hpp"
@@ -32,6 +33,7 @@ int parse_server_options(int argc, char** argv)
     CommandLine line(argv[0], "");
     return name == "spm_build"     ? code_of(spm_build::parse_options(line, argc, argv))
            : name == "spm_inspect" ? code_of(spm_inspect::parse_options(line, argc, argv))
+           : name == "tactus-keys" ? code_of(keys::parse_options(line, argc, argv))
            : name == "spm_publish" ? code_of(spm_publish::parse_options(line, argc, argv))
                                    : code_of(view::parse_options(line, argc, argv));
 }
@@ -45,7 +47,8 @@ TEST(ServerOptions, are_explained_behind_the_name_of_the_program)
 {
     for (const auto& [name, option] :
          {std::pair("spm_build", "--unit"), std::pair("spm_inspect", "--extract"),
-          std::pair("spm_publish", "--domain"), std::pair("spm_view", "--replay")})
+          std::pair("spm_publish", "--domain"), std::pair("spm_view", "--replay"),
+          std::pair("tactus-keys", "--revoke")})
     {
         const std::string program = name;
         const std::string version = test::shown_by(parse_server_options, program + " --version");

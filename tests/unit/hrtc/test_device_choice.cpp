@@ -44,19 +44,19 @@ TEST(DeviceChoice, takes_places_of_devices_that_are_not_simulated)
     ASSERT_TRUE(replay.has_value());
     EXPECT_EQ(replay.value().kind, DeviceKind::replay);
     EXPECT_EQ(replay.value().recording, "a:b.rec");
-    const auto plugin = parse_device("plugin:a/b.so,/dev/x,9600");
+    const auto plugin = parse_device("plugin:/a/b.so,/dev/x,9600");
     ASSERT_TRUE(plugin.has_value());
     EXPECT_EQ(plugin.value().kind, DeviceKind::plugin);
-    EXPECT_EQ(plugin.value().library, "a/b.so");
+    EXPECT_EQ(plugin.value().library, "/a/b.so");
     EXPECT_EQ(plugin.value().words, "/dev/x,9600");
-    EXPECT_EQ(parse_device("plugin:b.so").value().words, "");
+    EXPECT_EQ(parse_device("plugin:/b.so").value().words, "");
 }
 
 TEST(DeviceChoice, refuses_what_is_no_device)
 {
-    for (const char* text :
-         {"", "simulated", "sim:", "sim:Touch", "sim:touch ", "sim:sigma", "udp:80",
-          "udp:", "dhd:64", "dhd:-1", "replay", "replay:", "plugin", "plugin:", "plugin:,a"})
+    for (const char* text : {"", "simulated", "sim:", "sim:Touch", "sim:touch ", "sim:sigma",
+                             "udp:80", "udp:", "dhd:64", "dhd:-1", "replay", "replay:", "plugin",
+                             "plugin:", "plugin:,/a", "plugin:b.so", "plugin:./b.so"})
     {
         EXPECT_FALSE(parse_device(text).has_value()) << text;
     }

@@ -214,9 +214,9 @@ TEST_F(HrtcOptions, come_to_a_file_that_reads_as_they_do)
 {
     folder_.write("good.toml",
                   "model = [\"ball\", \"torus\"]\nplace = [\"0,0,0\", \"1,0,0\"]\nrate = 2000\n"
-                  "[[tool]]\n[[tool]]\ndevice = \"plugin:a.so,'b' 3\"\n");
+                  "[[tool]]\n[[tool]]\ndevice = \"plugin:/a.so,'b' 3\"\n");
     const std::string all = shown_by(parse, "hrtc --config good.toml --rate 4000 --print-config");
-    EXPECT_NE(all.find("\n\n[[tool]]\n\n[[tool]]\ndevice=\"plugin:a.so,'b' 3\"\n"),
+    EXPECT_NE(all.find("\n\n[[tool]]\n\n[[tool]]\ndevice=\"plugin:/a.so,'b' 3\"\n"),
               std::string::npos)
         << all;
     EXPECT_NE(all.find("\nrate=4000\n"), std::string::npos) << "the command line goes first";

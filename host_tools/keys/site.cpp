@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/keys/site.hpp"
+
+#include "host_tools/keys/archive.hpp"
+#include "host_tools/keys/authority.hpp"
+#include "transport/base/output_file.hpp"
+#include "transport/dds/key_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <sys/stat.h>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace tactus::keys
+{
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// Clocks of machines differ: validity begins a day before.
+constexpr std::time_t kSlack_s = kDay_s;
+/// The archive's folder, below /etc/tactus.
+constexpr const char* kFolder = "keys";
+
+/// During its lifetime, new files of the process are unreadable for other users.
+class OwnFiles
+{
+public:
+    OwnFiles() : before_(::umask(077)) {}
+    OwnFiles(const OwnFiles&) = delete;
+    OwnFiles& operator=(const OwnFiles&) = delete;
+    ~OwnFiles() { ::umask(before_); }
+
+private:
+    mode_t before_;
+};
+
+struct Period
+{
+    std::time_t now;
+    std::time_t from;
+    std::time_t until;
+};
+
+/// Drop-in for systemd, which gives the keys to a service with a separate user.
+std::string credentials()
+{
+    std::string text = "# For /etc/systemd/system/NAME.service.d: the service reads its keys in "
+                       "/run/credentials/NAME.service\n[Service]\n";
+    for (const char* file : dds::kKeyFiles)
+    {
+        text += fmt::format("LoadCredential={0}:/etc/tactus/{1}/{0}\n", file, kFolder);
+    }
+    return text;
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name)
+{
+    return std::ranges::find(names, name) != names.end();
+}
+
+/// The present identity of the folder if it is still valid, otherwise an empty one.
+Identity kept_identity(const fs::path& folder, const Authority& authority, std::time_t now)
+{
+    Identity identity{openssl::read_certificate(folder / dds::kIdentityFile),
+                      openssl::read_key(folder / dds::kKeyFile)};
+    const bool is_kept =
+        identity.certificate && identity.key && authority.vouches_for(identity, now);
+    return is_kept ? std::move(identity) : Identity{};
+}
+
+std::optional<Refusal> write_files(const fs::path& folder, const std::vector<ArchivedFile>& files,
+                                   std::time_t now)
+{
+    std::error_code error;
+    fs::create_directories(folder, error);
+    fs::permissions(folder, fs::perms::owner_all, error);
+    if (error)
+    {
+        return Refusal{fmt::format("--output: {}: {}", folder.string(), error.message())};
+    }
+    std::optional<Refusal> refusal;
+    for (const ArchivedFile& file : files)
+    {
+        refusal = refusal ? refusal : write_text(file.bytes, folder / file.name);
+    }
+    return refusal ? refusal : write_text(archive(kFolder, files, now), folder.string() + ".tar");
+}
+
+std::time_t end_of(const X509* certificate)
+{
+    std::tm parts{};
+    ASN1_TIME_to_tm(X509_get0_notAfter(certificate), &parts);
+    return timegm(&parts);
+}
+
+Result<IssuedKeys, Refusal> make_member(const Site& site, const Member& member,
+                                        Authority& authority, const Period& period)
+{
+    const fs::path folder = fs::path(site.output) / member.name;
+    Identity identity;
+    if (!has(site.renewed, member.name))
+    {
+        identity = kept_identity(folder, authority, period.now);
+    }
+    const bool is_new = !identity.certificate;
+    if (is_new)
+    {
+        auto issued = authority.issue(member.name, period.from, period.until);
+        if (!issued)
+        {
+            return issued.error();
+        }
+        identity = std::move(issued).value();
+    }
+    const std::vector<ArchivedFile> files{
+        {dds::kIdentityCaFile, authority.identity_ca()},
+        {dds::kPermissionsCaFile, authority.permissions_ca()},
+        {dds::kIdentityFile, text_of(identity.certificate.get())},
+        {dds::kKeyFile, text_of(identity.key.get()), true},
+        {dds::kGovernanceFile, authority.sign(governance(site.domain))},
+        {dds::kPermissionsFile, authority.sign(permissions(member.role, member.name, site.domain,
+                                                           period.from, period.until))},
+        {dds::kCrlFile, authority.crl()},
+        {kCredentialsFile, credentials()}};
+    if (const auto refusal = write_files(folder, files, period.now))
+    {
+        return *refusal;
+    }
+    return IssuedKeys{member, folder.string() + ".tar", end_of(identity.certificate.get()), is_new};
+}
+
+} // namespace
+
+Result<std::vector<IssuedKeys>, Refusal> make_keys(const Site& site, std::time_t now)
+{
+    [[maybe_unused]] const OwnFiles own;
+    const Period period{now, now - kSlack_s, now + std::time_t{site.days} * kDay_s};
+    auto authority = Authority::open(site.authority, now);
+    if (!authority)
+    {
+        return authority.error();
+    }
+    for (const std::string& name : site.revoked)
+    {
+        if (const auto revoked = authority.value().revoke(name, now); !revoked)
+        {
+            return revoked.error();
+        }
+    }
+    if (const auto renewed = authority.value().renew_crl(period.from, period.until); !renewed)
+    {
+        return renewed.error();
+    }
+    std::vector<IssuedKeys> made;
+    for (const Member& member : site.members)
+    {
+        auto keys = make_member(site, member, authority.value(), period);
+        if (!keys)
+        {
+            return keys.error();
+        }
+        made.push_back(std::move(keys).value());
+    }
+    return made;
+}
+
+} // namespace tactus::keys

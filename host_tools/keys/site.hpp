@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "host_tools/keys/rights.hpp"
+#include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
+
+#include <cstdint>
+#include <ctime>
+#include <string>
+#include <vector>
+
+namespace tactus::keys
+{
+
+/// Drop-in for the service, beside the keys.
+inline constexpr const char* kCredentialsFile = "credentials.conf";
+
+struct Member
+{
+    Role role{Role::server};
+    std::string name;
+};
+
+/// The programs of a site, and the choices for their keys.
+struct Site
+{
+    std::uint32_t domain{0};
+    std::vector<Member> members;
+    std::uint32_t days{365}; ///< Validity of certificates, rights and the CRL.
+    std::string authority{"authority"};
+    std::string output{"machines"};
+    std::vector<std::string> renewed; ///< Names that get a new certificate.
+    std::vector<std::string> revoked; ///< Names whose certificates are put on the CRL.
+};
+
+/// Result for one member.
+struct IssuedKeys
+{
+    Member member;
+    std::string archive;
+    std::time_t until{};
+    bool is_new{false};
+};
+
+/// Makes the certificates that are missing, expired or to be renewed; valid ones stay. Signs rights
+/// and CRL for `days` from `now`. Writes a folder output/NAME for each member, and an archive
+/// output/NAME.tar with the same files in keys/. Refused if a file can't be read or written.
+[[nodiscard]] Result<std::vector<IssuedKeys>, Refusal> make_keys(const Site& site, std::time_t now);
+
+} // namespace tactus::keys

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "host_tools/keys/rights.hpp"
+#include "tests/shared/temporary_folder.hpp"
+#include "transport/dds/domain.hpp"
+#include "transport/dds/security.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+#include <string>
+
+namespace tactus
+{
+
+namespace
+{
+
+std::string with_interfaces(const std::string& interfaces)
+{
+    return "<CycloneDDS><Domain id=\"any\"><General><Interfaces>" + interfaces +
+           "</Interfaces></General></Domain></CycloneDDS>";
+}
+
+constexpr const char* kLoopback = "<NetworkInterface name=\"lo\" multicast=\"false\"/>";
+constexpr const char* kNetwork = "<NetworkInterface name='eth0'/>";
+
+} // namespace
+
+TEST(NetworkSecurity, a_configuration_is_open_that_names_more_than_loopback)
+{
+    EXPECT_FALSE(dds::is_open_to_network(""));
+    EXPECT_FALSE(dds::is_open_to_network(with_interfaces(kLoopback)));
+    EXPECT_FALSE(dds::is_open_to_network(
+        with_interfaces("<NetworkInterface multicast='true' address=\"127.0.0.1\"/>")));
+    EXPECT_TRUE(dds::is_open_to_network(with_interfaces(kNetwork)));
+    EXPECT_TRUE(dds::is_open_to_network(with_interfaces("<NetworkInterface address='10.0.0.1'/>")));
+    EXPECT_TRUE(dds::is_open_to_network(
+        with_interfaces("<NetworkInterface autodetermine='true' multicast='lo'/>")));
+    EXPECT_TRUE(dds::is_open_to_network(with_interfaces(std::string(kLoopback) + kNetwork)));
+    EXPECT_TRUE(dds::is_open_to_network("<CycloneDDS/>"));
+    EXPECT_TRUE(dds::is_open_to_network("<!-- " + with_interfaces(kLoopback) + " -->" +
+                                        with_interfaces(kNetwork)));
+    EXPECT_TRUE(dds::is_open_to_network("<!-- <Security> -->" + with_interfaces(kNetwork)));
+    EXPECT_FALSE(dds::is_open_to_network("<Security/>" + with_interfaces(kNetwork)));
+}
+
+TEST(NetworkSecurity, the_files_of_a_configuration_are_looked_at)
+{
+    const test::TemporaryFolder folder("uri");
+    const std::string loopback = folder.write("lo.xml", with_interfaces(kLoopback)).string();
+    const std::string network = folder.write("net.xml", with_interfaces(kNetwork)).string();
+    EXPECT_FALSE(dds::is_open_to_network(loopback));
+    EXPECT_FALSE(dds::is_open_to_network("file://" + loopback));
+    EXPECT_TRUE(dds::is_open_to_network("file://" + network));
+    EXPECT_TRUE(dds::is_open_to_network("file://" + loopback + ",file://" + network));
+    EXPECT_FALSE(dds::is_open_to_network("file://" + loopback + "-missing")); // Cyclone refuses.
+}
+
+TEST(NetworkSecurity, a_network_is_not_joined_without_keys_unless_that_is_asked_for)
+{
+    ::setenv("CYCLONEDDS_URI", with_interfaces(kNetwork).c_str(), 1);
+    const auto refused = dds::Domain::join({5, NetworkSecurity{}});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text,
+              "CYCLONEDDS_URI names a network, and every program there can take part: use "
+              "--security DIR for keys, or --plain to continue without");
+    // Cyclone checks the presence of eth0.
+    for (const auto& choice : {dds::DomainChoice{5, {"", true}}, dds::DomainChoice{5}})
+    {
+        const auto joined = dds::Domain::join(choice);
+        EXPECT_TRUE(joined || joined.error().text.starts_with("DDS domain 5 cannot be joined"));
+    }
+    const auto no_keys = dds::Domain::join({5, NetworkSecurity{"no folder", false}});
+    ASSERT_FALSE(no_keys);
+    EXPECT_EQ(no_keys.error().text, "--security: no folder: is no folder");
+    ::unsetenv("CYCLONEDDS_URI");
+}
+
+/// Every partition that the documents name; what Cyclone makes of them the test
+/// integration.secured_programs shows.
+TEST(Rights, name_a_controllers_own_partitions_alone)
+{
+    const std::string of_controller =
+        keys::permissions(keys::Role::controller, "hand-1", 7, 0, 86'400);
+    const std::string of_viewer = keys::permissions(keys::Role::viewer, "desk", 7, 0, 86'400);
+    std::set<std::string> partitions;
+    for (std::size_t at = 0; (at = of_controller.find("<partition>", at)) != std::string::npos;)
+    {
+        at += 11;
+        partitions.insert(of_controller.substr(at, of_controller.find('<', at) - at));
+    }
+    EXPECT_EQ(partitions, (std::set<std::string>{"", "hand-1", "hand-1.*", "server.*"}));
+    EXPECT_NE(of_controller.find("<subject_name>CN=hand-1</subject_name>"), std::string::npos);
+    EXPECT_NE(of_controller.find("<not_before>1970-01-01T00:00:00</not_before>"
+                                 "<not_after>1970-01-02T00:00:00</not_after>"),
+              std::string::npos);
+    EXPECT_EQ(of_viewer.find("<publish>"), std::string::npos);
+    EXPECT_EQ(of_viewer.find("chunks"), std::string::npos);
+    EXPECT_NE(of_viewer.find("telemetry"), std::string::npos);
+}
+
+} // namespace tactus

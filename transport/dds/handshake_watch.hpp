@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "transport/dds/backoff.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+namespace tactus::dds
+{
+
+/// Detects handshakes of DDS Security that never end, a fault of Cyclone DDS (its issue 1895). If
+/// only one side loses the lease of the other, that side begins a handshake, and the other side,
+/// still connected, does not answer. Remedy: this process is silent until its lease ends on the
+/// other side too; both then begin again.
+class HandshakeWatch
+{
+public:
+    using Clock = std::chrono::steady_clock;
+    /// Time without a connection after which a silence is due; handshakes take less than a second.
+    static constexpr std::chrono::seconds kPatience{5};
+    /// Length of the first silence. Each further one is longer by as much, up to the largest, which
+    /// exceeds Cyclone's default lease of 10 s.
+    static constexpr std::chrono::seconds kSilence{3};
+    static constexpr std::chrono::seconds kLongestSilence{12};
+
+    /// Takes the present state: `is_connected`, a server is connected; `is_discovered`, a server
+    /// that was connected before is present, but none is connected. Returns the length of a silence
+    /// that is due now. The pauses between silences double up to a minute.
+    [[nodiscard]] std::optional<std::chrono::seconds> step(Clock::time_point now, bool is_connected,
+                                                           bool is_discovered) noexcept
+    {
+        if (is_connected)
+        {
+            *this = {};
+        }
+        if (!is_discovered)
+        {
+            since_.reset();
+            return std::nullopt;
+        }
+        since_ = since_.value_or(now);
+        if (now - *since_ < kPatience || !pause_.is_due(now))
+        {
+            return std::nullopt;
+        }
+        since_.reset();
+        silence_ = std::min(silence_ + kSilence, kLongestSilence);
+        pause_.begin(now);
+        return silence_;
+    }
+
+private:
+    std::optional<Clock::time_point> since_; ///< Start of the present state without a connection.
+    std::chrono::seconds silence_{0};        ///< Length of the last silence.
+    Backoff pause_;
+};
+
+} // namespace tactus::dds

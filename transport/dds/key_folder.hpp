@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/result.hpp"
+#include "transport/base/refusal.hpp"
+
+#include <array>
+#include <cstdint>
+#include <ctime>
+#include <string>
+
+namespace tactus::dds
+{
+
+/// Largest domain that Cyclone accepts in governance and permissions.
+inline constexpr std::uint32_t kMaxSecuredDomain = 230;
+
+inline constexpr const char* kIdentityCaFile = "identity_ca.pem";
+inline constexpr const char* kPermissionsCaFile = "permissions_ca.pem";
+inline constexpr const char* kIdentityFile = "identity.pem";
+inline constexpr const char* kKeyFile = "identity.key"; ///< The secret file.
+inline constexpr const char* kGovernanceFile = "governance.p7s";
+inline constexpr const char* kPermissionsFile = "permissions.p7s";
+inline constexpr const char* kCrlFile = "crl.pem";
+inline constexpr std::array kKeyFiles{kIdentityCaFile, kPermissionsCaFile, kIdentityFile, kKeyFile,
+                                      kGovernanceFile, kPermissionsFile,   kCrlFile};
+
+/// Keys of one program on a protected domain: a folder with all of kKeyFiles.
+struct KeyFolder
+{
+    std::string path; ///< Absolute path of the folder.
+    std::string name; ///< Common name of the certificate; for a controller its name on the domain.
+    std::time_t valid_until{}; ///< End of the certificate or the CRL, the earlier.
+};
+
+/// Reads and checks a folder of keys. Refused in one line: a missing or broken file; a private key
+/// that other users may read or that does not belong to the certificate; a certificate or CRL that
+/// is not valid at `now`; a certificate that is revoked or of another authority; documents that
+/// were changed or are not for `domain`; domains above 230. Ordinary thread; reads files.
+[[nodiscard]] Result<KeyFolder, Refusal> read_key_folder(const std::string& path,
+                                                         std::uint32_t domain, std::time_t now);
+
+/// The 12 hexadecimal digits that stand for the certificate of that name in lines and reports. The
+/// GUIDs of its participants begin with them (Participants::certificate_of()).
+[[nodiscard]] std::string certificate_digits(const std::string& name);
+
+} // namespace tactus::dds
