@@ -113,7 +113,8 @@ def stage_reference(root, output):
         write(source / f'reference/{name}.rst', text)
     write(source / 'reference/python.rst',
           reference.python_page(read(root / 'host_tools/python/tactus.pyi'),
-                                read(root / 'host_tools/python/module.cpp')))
+                                *(read(root / f'host_tools/python/{name}.cpp')
+                                  for name in ('module', 'world'))))
     for header in reference.public_headers(root):
         write(output / 'include/tactus' / header,
               reference.grouped(header, read(root / header)))

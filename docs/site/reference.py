@@ -6,6 +6,7 @@ import re
 # Group of the C++ reference: (its name, its title, beginnings of the paths of its headers). A
 # header belongs to the first group that names it.
 GROUPS = (
+    ('world', 'World', ('platform/world/', 'platform/loop/hand_state')),
     ('frame', 'Frame', ('rt_core/frame/', 'rt_core/records/frame_', 'rt_core/records/local_',
                         'rt_core/records/mesh_', 'rt_core/records/predict',
                         'rt_core/records/work_', 'rt_core/base/arena', 'rt_core/kernels/')),
@@ -30,6 +31,8 @@ EXCEPTIONS = {
     'rt_core/base/realtime.hpp': 'machine',
 }
 C_HEADER = 'host_tools/c/tactus.h'
+# Header that programs include instead of one of these.
+SHORT_NAMES = {'platform/world/world.hpp': 'world.hpp'}
 
 
 class Fault(Exception):
@@ -154,7 +157,7 @@ def grouped(header, text):
     text = re.sub(r'^\} // namespace tactus', '/** @} */ }', text, flags=re.M)
     # Breathe can't read defaults with named members; NAME@HASH is no command of Doxygen.
     text = re.sub(r' ?=? ?\{\s*\.[^{}]*\}', lambda default: '\n' * default[0].count('\n'), text)
-    return re.sub(r'(?<=[A-Z])@(?=[A-Z])', r'\\@', text)
+    return re.sub(r'@(?=[A-Z])', r'\\@', text)
 
 
 def c_header(text):
@@ -189,7 +192,8 @@ def api_pages(root):
     for name, title, _ in GROUPS:
         own = [header for header in headers if group_of(header) == name]
         note = '\n'.join(['.. code-block:: cpp', '',
-                          *(f'   #include <tactus/{header}>' for header in own)])
+                          *(f'   #include <tactus/{SHORT_NAMES.get(header, header)}>'
+                            for header in own)])
         yield f'cpp_{name}', group_page(name, title, note)
     text = (root / C_HEADER).read_text(encoding='utf-8')
     about = re.sub(r'^ ?\*', '', re.search(r'/\*(.*?)\*/', text, re.S)[1], flags=re.M)
@@ -200,10 +204,13 @@ def api_pages(root):
 # --- Python --------------------------------------------------------------------------------------
 
 def docstrings(text):
-    """(class, or '' for the module; member) -> docstring, from the source of the module."""
-    found = {('', ''): re.search(r'module\.doc\(\) =\s*R"\((.*?)\)"', text, re.S)[1]}
+    """(class, or '' for the module; member) -> docstring, from a source of the module."""
+    whole = re.search(r'module\.doc\(\) =\s*R"\((.*?)\)"', text, re.S)
+    found = {('', ''): whole[1]} if whole else {}
+    for name, rest in re.findall(r'module\.def\("(\w+)",(.*?)\);\n', text, re.S):
+        found['', name] = string_of(rest)
     for block in re.split(r'py::class_<', text)[1:]:
-        name = re.search(r'\(module, "(\w+)"', block)[1]
+        name = re.search(r'\(\s*module,\s*"(\w+)"', block)[1]
         head, *members = re.split(r'\.def(?:_static|_readonly|_property_readonly)?\(', block)
         found[name, ''] = string_of(head.split(f'"{name}"', 1)[1])
         for member in members:
@@ -215,7 +222,8 @@ def docstrings(text):
 
 def string_of(code):
     """The docstring among a call's arguments; empty without one."""
-    code = re.sub(r'(?:"\w+"_a(?: = (?:"[^"]*"|[^,")]+))?)', '', code.split('module.attr')[0])
+    code = re.split(r'module\.(?:attr|def)\b', code)[0]
+    code = re.sub(r'(?:"\w+"_a(?: = (?:"[^"]*"|[^,")]+))?)', '', code)
     raw = re.search(r'R"\((.*?)\)"', code, re.S)
     if raw:
         return raw[1].strip()
@@ -237,9 +245,9 @@ def text_of(doc, indent):
     return [indent + line if line else '' for line in doc.split('\n')] + [''] if doc else []
 
 
-def python_page(stub, module):
-    """The module's names, from its stub and its docstrings."""
-    docs = docstrings(module)
+def python_page(stub, *sources):
+    """The module's names, from its stub and the docstrings of its sources."""
+    docs = {place: doc for source in sources for place, doc in docstrings(source).items()}
     tree = ast.parse(stub)
     page = [*heading('Python API'), '.. py:module:: tactus', '', *text_of(docs['', ''], '')]
     constants = [node.target.id for node in tree.body if isinstance(node, ast.AnnAssign)]
@@ -263,4 +271,7 @@ def python_page(stub, module):
                     static = 'staticmethod' in marks
                     page += [f'   .. py:method:: {member.name}{signature(member, not static)}',
                              *(['      :staticmethod:'] if static else []), '', *doc]
+    for node in (node for node in tree.body if isinstance(node, ast.FunctionDef)):
+        page += [f'.. py:function:: {node.name}{signature(node, False)}', '',
+                 *text_of(docs.get(('', node.name), ''), '   ')]
     return '\n'.join(page) + '\n'

@@ -63,10 +63,12 @@ class Python(unittest.TestCase):
             self.assertIn(part, page)
 
     def test_each_public_name_of_the_module_is_on_the_page(self):
-        module = (CHECKOUT / 'host_tools/python/module.cpp').read_text(encoding='utf-8')
-        stub = (CHECKOUT / 'host_tools/python/tactus.pyi').read_text(encoding='utf-8')
-        page = reference.python_page(stub, module)
-        for name in ('Moves the tools through N poses', 'Sets the pose of an object', 'Frame(models'):
+        folder = CHECKOUT / 'host_tools/python'
+        stub, *sources = ((folder / name).read_text(encoding='utf-8')
+                          for name in ('tactus.pyi', 'module.cpp', 'world.cpp'))
+        page = reference.python_page(stub, *sources)
+        for name in ('Moves the tools through N poses', 'Sets the pose of an object', 'Frame(models',
+                     'Answers of a path of N poses', 'function:: touch(model', 'on its path over a'):
             self.assertIn(name, page)
 
 
@@ -134,7 +136,8 @@ class Pages(unittest.TestCase):
     def test_a_dead_link_fails_the_build_and_is_named_with_its_line(self):
         root = self.docs.parent
         for path in ('cmake/components.cmake', 'host_tools/python/tactus.pyi', 'CMakeLists.txt',
-                     'host_tools/python/module.cpp', 'host_tools/c/tactus.h'):
+                     'host_tools/python/module.cpp', 'host_tools/python/world.cpp',
+                     'host_tools/c/tactus.h'):
             (root / path).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(CHECKOUT / path, root / path)
         (root / 'cmake/components.cmake').write_text('rt_core/base/result.hpp\n')
