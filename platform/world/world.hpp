@@ -38,6 +38,8 @@ public:
     [[nodiscard]] Result<Done, Refusal> move(const Pose& pose) const;
     /// Gives the object another material, which tools in contact feel blended in within 50 ms.
     [[nodiscard]] Result<Done, Refusal> feel(const MaterialOptions& material) const;
+    /// Removes the object. Refused before the first frame, and like move() for the first object of
+    /// a published model while its server moves it (WorldOptions::follows_poses).
     [[nodiscard]] Result<Done, Refusal> remove() const;
 
 private:

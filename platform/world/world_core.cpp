@@ -1046,6 +1046,17 @@ std::optional<Refusal> WorldCore::why_not_change(const WorldObject& object,
     return std::nullopt;
 }
 
+/// Reason why an object of a server is the server's to move. With mutex_.
+std::optional<Refusal> WorldCore::why_served(const WorldObject& object, std::string_view call) const
+{
+    const bool is_served =
+        object.generation_ == 0 && object.number_ < is_served_.size() && is_served_[object.number_];
+    return is_served ? std::optional(failure(
+                           fmt::format("{}: a server moves '{}'; set follows_poses to false", call,
+                                       name_of(object.number_))))
+                     : std::nullopt;
+}
+
 Result<Done, Refusal> WorldCore::move(const WorldObject& object, const Pose& pose)
 {
     const auto place = checked_place(pose);
@@ -1071,10 +1082,9 @@ Result<Done, Refusal> WorldCore::move(const WorldObject& object, const Pose& pos
         options_.objects[object.number_].place = place.value();
         return Done{};
     }
-    if (object.number_ < is_served_.size() && is_served_[object.number_] && object.generation_ == 0)
+    if (const auto refusal = why_served(object, "move()"))
     {
-        return failure(fmt::format("move(): a server moves '{}'; set follows_poses to false",
-                                   name_of(object.number_)));
+        return *refusal;
     }
     return scene_->try_move({object.number_, object.generation_}, place.value())
                ? Result<Done, Refusal>(Done{})
@@ -1130,6 +1140,10 @@ Result<Done, Refusal> WorldCore::remove(const WorldObject& object)
     if (phase_.load() == Phase::open)
     {
         return failure("remove(): an object leaves after the first frame; before it, don't add it");
+    }
+    if (const auto refusal = why_served(object, "remove()"))
+    {
+        return *refusal; // The server's poses would move the next object of this number.
     }
     return scene_->try_remove({object.number_, object.generation_})
                ? Result<Done, Refusal>(Done{})

@@ -111,6 +111,8 @@ private:
     [[nodiscard]] Result<Done, Refusal> finished() const;
     [[nodiscard]] std::optional<Refusal> why_not_change(const WorldObject& object,
                                                         std::string_view call) const;
+    [[nodiscard]] std::optional<Refusal> why_served(const WorldObject& object,
+                                                    std::string_view call) const;
     void tell_of_callbacks();
     [[nodiscard]] std::string name_of(std::uint32_t object) const;
 
