@@ -24,7 +24,7 @@ int main(int argc, char** argv)
             tactus_world_step(world, hand, at_m, NULL, 0.0, &felt, &error);
         }
     }
-    printf("%s", error.text[0] != '\0' ? error.text : "");
+    fprintf(stderr, "%s%s", error.text, error.text[0] != '\0' ? "\n" : "");
     printf("force %.3f N, proxy at %.5f m\n", felt.force_n[2], felt.proxy_m[2]);
     tactus_world_end(world);
     return error.text[0] != '\0' ? 2 : 0;

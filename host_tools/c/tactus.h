@@ -299,8 +299,8 @@ TACTUS_CALL tactus_result tactus_frame_state_of(const tactus_frame* frame,
  * (docs/library.md). These calls are in the library of CMake's target Tactus::tactus and of
  * pkg-config's module tactus. Strings are UTF-8 in the words of hrtc's options.
  *
- * Threads: tactus_world_state(), _hold(), _move(), _feel(), _remove(), _counts() and _stop() are
- * for any thread and never block the loop; one thread makes the other calls. */
+ * Threads: tactus_world_state(), _hold(), _move(), _feel(), _remove(), _counts_of() and _stop()
+ * are for any thread and never block the loop; one thread makes the other calls. */
 
 typedef struct tactus_world tactus_world;
 /* An object or a hand of one world. 0: none. */
@@ -315,10 +315,10 @@ typedef struct tactus_world_options
     int64_t rate_hz;             /* 100 to 10000 [default: 1000] */
     double memory_mib;           /* 0.25 to 4096 [default: 2] */
     double stiffness_n_per_m;    /* 1 to 3000 [default: 500] */
-    double object_speed_m_per_s; /* Speed limit of objects near a tool [default: 0.5] */
-    double wait_s;               /* Longest wait for a device or a server [default: 10] */
-    double duration_s;           /* Duration of the loop of start; 0: until stopped. */
-    uint32_t domain;             /* DDS domain of servers and viewers. */
+    double object_speed_m_per_s; /* Objects near a tool, 0.001 to 100 [default: 0.5] */
+    double wait_s;               /* Wait for a device or a server, 0.1 to 3600 [default: 10] */
+    double duration_s;           /* Loop of start, 0.1 to 86400 s; 0: until stopped. */
+    uint32_t domain;             /* DDS domain of servers and viewers, 0 to 232. */
     int32_t is_watched;          /* Not 0: viewers can see the world. */
     int32_t follows_poses;       /* Not 0: servers move their objects [default: 1] */
     int32_t loads_whole;         /* Not 0: a model that fits is loaded as a whole [default: 1] */
@@ -359,7 +359,8 @@ TACTUS_CALL tactus_result tactus_world_make(const tactus_world_options* options,
                                             tactus_world** world, tactus_error* error);
 TACTUS_CALL void tactus_world_end(tactus_world* world);
 
-/* Adds an object. TACTUS_REFUSED for an unsuitable model; the world may be used all the same. */
+/* Adds an object. After a refused one before the first frame the world never begins: start and step
+ * return the same line. A later refusal changes nothing. */
 TACTUS_CALL tactus_result tactus_world_add(tactus_world* world, const tactus_world_object* object,
                                            tactus_handle* handle, tactus_error* error);
 /* Adds a hand before the first frame: a tool as for --tool, such as "sphere:0.002", and a device as
@@ -368,7 +369,8 @@ TACTUS_CALL tactus_result tactus_world_add_hand(tactus_world* world, const char*
                                                 const char* device, tactus_handle* hand,
                                                 tactus_error* error);
 
-/* Starts the guarded loop, and ends it. A world that has ended never runs again. */
+/* Starts the guarded loop; ends it, or a loop of one's own. A world that has ended keeps its last
+ * states, has closed its devices and never runs again. */
 TACTUS_CALL tactus_result tactus_world_start(tactus_world* world, tactus_error* error);
 TACTUS_CALL tactus_result tactus_world_stop(tactus_world* world, tactus_error* error);
 
@@ -378,7 +380,7 @@ TACTUS_CALL tactus_result tactus_world_stop(tactus_world* world, tactus_error* e
 /* Bounds and nearest points of a tool and one object near it, world frame. */
 typedef struct tactus_hand_contact
 {
-    uint32_t object;     /* Number of the object: the n-th added has n - 1, from the start. */
+    uint32_t object;     /* Number of the object; the n-th of the start has n - 1. */
     int32_t kind;        /* tactus_kind */
     int32_t is_touched;  /* Not 0: the tool may touch the object. */
     double lower_m;      /* Bounds of the distance from the tool's core. */
@@ -413,9 +415,10 @@ TACTUS_CALL tactus_result tactus_world_state(const tactus_world* world, tactus_h
 TACTUS_CALL tactus_result tactus_world_hold(tactus_world* world, tactus_handle hand,
                                             const double* position_m, const double* rotation,
                                             tactus_error* error);
-/* Runs the next frame in a loop of one's own, `dt_s` after the last one; 0: one period. `hand`
- * moves to the pose; 0: all hands stay. The first call opens models and devices. `state` may be
- * null. */
+/* Runs the next frame in a loop of one's own, `dt_s` after the last one, rounded to periods, at
+ * most a second; 0: one period. `hand` moves to the pose; 0: all hands stay, and the state is not
+ * written. The first call opens models and devices; udp, dhd and plugin devices need start.
+ * `state` may be null. */
 TACTUS_CALL tactus_result tactus_world_step(tactus_world* world, tactus_handle hand,
                                             const double* position_m, const double* rotation,
                                             double dt_s, tactus_hand_state* state,

@@ -65,7 +65,8 @@ void check_done(const Result<Value, Refusal>& result)
 {
     if (!result)
     {
-        refuse(TACTUS_REFUSED, "{}", result.error().text);
+        refuse(result.error().is_usage ? TACTUS_BAD_ARGUMENT : TACTUS_REFUSED, "{}",
+               result.error().text);
     }
 }
 

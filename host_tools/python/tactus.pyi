@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
 # Types of the module `tactus`, for editors and checkers.
+from os import PathLike
 from typing import Optional, Sequence, TypedDict
 
 from numpy import bool_, float64, int32, uint8, uint32
@@ -171,8 +172,9 @@ class World:
                  stiffness_n_per_m: float = 500.0, objects_max: int = 0,
                  object_speed_m_per_s: float = 0.5, wait_s: float = 10.0,
                  duration_s: float = 0.0, domain: int = 0, is_watched: bool = False,
-                 allow_no_rt: bool = False, record: str = "") -> None: ...
-    def add(self, model: str | tuple[ArrayLike, ArrayLike], *, unit: str = "m",
+                 allow_no_rt: bool = False, record: str = "", follows_poses: bool = True,
+                 loads_whole: bool = True, has_no_guardian: bool = False) -> None: ...
+    def add(self, model: str | PathLike[str] | tuple[ArrayLike, ArrayLike], *, unit: str = "m",
             published: bool = False, rotation: Optional[ArrayLike] = None,
             translation_m: Optional[ArrayLike] = None, scale: float = 1.0,
             stiffness_n_per_m: float = 0.0, static_friction: float = 0.0,
@@ -184,6 +186,6 @@ class World:
     def step(self, dt_s: float = 0.0) -> None: ...
     def counts(self) -> WorldCounts: ...
 
-def touch(model: str | tuple[ArrayLike, ArrayLike], positions_m: ArrayLike, *,
+def touch(model: str | PathLike[str] | tuple[ArrayLike, ArrayLike], positions_m: ArrayLike, *,
           tool: str = "sphere:0.002", unit: str = "m", memory_mib: float = 2.0,
           stiffness_n_per_m: float = 500.0) -> Felt: ...

@@ -2,9 +2,12 @@
 // Copyright the Tactus authors.
 #include "host_tools/python/arrays.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <pybind11/stl.h>
@@ -43,6 +46,30 @@ const double* rotation_of(const py::object& rotation, Numbers& rows)
     rows = numbers_of(rotation, "rotation");
     check_shape(rows, {3, 3}, "rotation");
     return rows.data();
+}
+
+/// Faces, M x 3, as indices.
+py::array_t<std::uint32_t> faces_of(const py::object& given)
+{
+    const Numbers corners = numbers_of(given, "faces");
+    const py::ssize_t count = corners.ndim() > 0 ? corners.shape(0) : 0;
+    check_shape(corners, {count, 3}, "faces");
+    py::array_t<std::uint32_t> faces(std::vector<py::ssize_t>{count, 3});
+    std::uint32_t* const written = faces.mutable_data();
+    for (py::ssize_t i = 0; i < 3 * count; ++i)
+    {
+        const double index = corners.data()[i];
+        const bool is_index = index >= 0.0 && std::floor(index) == index &&
+                              index <= std::numeric_limits<std::uint32_t>::max();
+        if (!is_index) // NaN, too.
+        {
+            throw py::value_error("faces: element " + std::to_string(i) + " is " +
+                                  std::string(py::str(py::float_(index))) +
+                                  "; a whole number from 0 is needed");
+        }
+        written[i] = static_cast<std::uint32_t>(index);
+    }
+    return faces;
 }
 
 tactus_material material_of(double stiffness_n_per_m, double static_friction,
@@ -194,7 +221,8 @@ class World
 public:
     World(std::int64_t rate_hz, double memory_mib, double stiffness_n_per_m,
           std::uint32_t objects_max, double object_speed_m_per_s, double wait_s, double duration_s,
-          std::uint32_t domain, bool is_watched, bool allow_no_rt, const std::string& record)
+          std::uint32_t domain, bool is_watched, bool allow_no_rt, const std::string& record,
+          bool follows_poses, bool loads_whole, bool has_no_guardian)
     {
         tactus_world_options options;
         tactus_world_options_default(&options);
@@ -209,6 +237,9 @@ public:
         options.is_watched = is_watched ? 1 : 0;
         options.allow_no_rt = allow_no_rt ? 1 : 0;
         options.record = record.c_str();
+        options.follows_poses = follows_poses ? 1 : 0;
+        options.loads_whole = loads_whole ? 1 : 0;
+        options.has_no_guardian = has_no_guardian ? 1 : 0;
         tactus_world* world = nullptr;
         check([&](tactus_error* error) { return tactus_world_make(&options, &world, error); });
         world_ = Owner(world,
@@ -230,10 +261,11 @@ public:
         object.material = &material;
         std::string text = "mesh";
         Numbers vertices;
-        py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast> faces;
-        if (py::isinstance<py::str>(model))
+        py::array_t<std::uint32_t> faces;
+        const bool is_path = py::hasattr(model, "__fspath__");
+        if (is_path || py::isinstance<py::str>(model))
         {
-            text = py::cast<std::string>(model);
+            text = py::cast<std::string>(is_path ? py::object(model.attr("__fspath__")()) : model);
             const bool is_model = text.size() >= 4 && text.ends_with(".spm");
             object.source = published  ? TACTUS_PUBLISHED
                             : is_model ? TACTUS_MODEL_FILE
@@ -241,12 +273,15 @@ public:
         }
         else
         {
+            if (!py::isinstance<py::sequence>(model) || py::len(model) != 2)
+            {
+                throw py::type_error("model: " + std::string(py::str(py::type::of(model))) +
+                                     "; a path, or a pair of vertices and faces, is needed");
+            }
             const auto parts = py::cast<std::pair<py::object, py::object>>(model);
             vertices = numbers_of(parts.first, "vertices");
             check_shape(vertices, {vertices.ndim() > 0 ? vertices.shape(0) : 0, 3}, "vertices");
-            const Numbers corners = numbers_of(parts.second, "faces");
-            check_shape(corners, {corners.ndim() > 0 ? corners.shape(0) : 0, 3}, "faces");
-            faces = corners;
+            faces = faces_of(parts.second);
             object.source = TACTUS_MESH;
             object.vertices = vertices.data();
             object.vertex_count = static_cast<std::uint32_t>(vertices.shape(0));
@@ -304,7 +339,8 @@ private:
 Felt touch(const py::object& model, const py::object& positions_m, const std::string& tool,
            const std::string& unit, double memory_mib, double stiffness_n_per_m)
 {
-    const World world(1'000, memory_mib, stiffness_n_per_m, 0, 0.5, 10.0, 0.0, 0, false, false, "");
+    const World world(1'000, memory_mib, stiffness_n_per_m, 0, 0.5, 10.0, 0.0, 0, false, false, "",
+                      true, true, false);
     static_cast<void>(world.add(model, unit, false, py::none(), py::none(), 1.0,
                                 material_of(0.0, 0.0, std::nullopt, 0.0, 0.0, 0.0, 0.0)));
     return world.hand(tool, std::nullopt).path(positions_m, py::none());
@@ -384,11 +420,12 @@ Options are those of hrtc; see docs/python.md.
 (True, 0.19, '')
 )")
         .def(py::init<std::int64_t, double, double, std::uint32_t, double, double, double,
-                      std::uint32_t, bool, bool, const std::string&>(),
+                      std::uint32_t, bool, bool, const std::string&, bool, bool, bool>(),
              py::kw_only(), "rate_hz"_a = 1'000, "memory_mib"_a = 2.0,
              "stiffness_n_per_m"_a = 500.0, "objects_max"_a = 0, "object_speed_m_per_s"_a = 0.5,
              "wait_s"_a = 10.0, "duration_s"_a = 0.0, "domain"_a = 0, "is_watched"_a = false,
-             "allow_no_rt"_a = false, "record"_a = "")
+             "allow_no_rt"_a = false, "record"_a = "", "follows_poses"_a = true,
+             "loads_whole"_a = true, "has_no_guardian"_a = false)
         .def(
             "add",
             [](const World& world, const py::object& model, const std::string& unit, bool published,

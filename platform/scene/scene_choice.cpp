@@ -141,9 +141,11 @@ std::optional<Refusal> take_scene_file(Options& options)
     {
         log_message(LogLevel::info, "hrtc", "note: " + note);
     }
+    const std::size_t before = options.models.size(); // Mesh tools of a World.
     std::ranges::move(placed.models, std::back_inserter(options.models));
     for (PlacedObject& object : placed.objects)
     {
+        object.model += before;
         object.material = options.scene_materials.felt(object.name, object.material);
         options.objects.push_back(std::move(object));
     }

@@ -6,6 +6,7 @@
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "platform/choices/messages.hpp"
+#include "platform/world/program_devices.hpp"
 #include "platform/world/world_words.hpp"
 #include "transport/model_name.hpp"
 
@@ -64,6 +65,8 @@ Result<ModelOptions, Refusal> options_of(const MeshOptions& options)
     {
         made.progress = [told = options.progress](double share)
         {
+            const CallbackScope
+                scope; // A call of the World would wait for add(), which waits here.
             try
             {
                 told(share);

@@ -12,20 +12,21 @@ namespace
 
 thread_local int callbacks = 0; // Nested ones count, too.
 
-class CallbackScope
-{
-public:
-    CallbackScope() noexcept { ++callbacks; }
-    CallbackScope(const CallbackScope&) = delete;
-    CallbackScope& operator=(const CallbackScope&) = delete;
-    ~CallbackScope() { --callbacks; }
-};
-
 } // namespace
 
 bool is_in_callback() noexcept
 {
     return callbacks > 0;
+}
+
+CallbackScope::CallbackScope() noexcept
+{
+    ++callbacks;
+}
+
+CallbackScope::~CallbackScope()
+{
+    --callbacks;
 }
 
 DeviceSample SharedDevice::read() noexcept
@@ -38,6 +39,30 @@ void SharedDevice::write(const Wrench& wrench) noexcept
 {
     const CallbackScope scope;
     device_->write(wrench);
+}
+
+void SharedDevice::brake() noexcept
+{
+    const CallbackScope scope;
+    device_->brake();
+}
+
+void SharedDevice::brake_softly() noexcept
+{
+    const CallbackScope scope;
+    device_->brake_softly();
+}
+
+void SharedDevice::release_brake() noexcept
+{
+    const CallbackScope scope;
+    device_->release_brake();
+}
+
+DeviceStatus SharedDevice::status() const noexcept
+{
+    const CallbackScope scope;
+    return device_->status();
 }
 
 ExternalForce CallbackForce::next(const DeviceSample& /*sample*/, const ToolState& tool,

@@ -19,6 +19,16 @@ namespace tactus::hrtc
 /// may wait are refused there.
 [[nodiscard]] bool is_in_callback() noexcept;
 
+/// Marks the calling thread as in a callback or device of a program.
+class CallbackScope
+{
+public:
+    CallbackScope() noexcept;
+    CallbackScope(const CallbackScope&) = delete;
+    CallbackScope& operator=(const CallbackScope&) = delete;
+    ~CallbackScope();
+};
+
 /// Device of a program's own class, which the program may keep, too.
 class SharedDevice final : public HapticDevice
 {
@@ -28,10 +38,10 @@ public:
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }
     [[nodiscard]] DeviceSample read() noexcept override;
     void write(const Wrench& wrench) noexcept override;
-    void brake() noexcept override { device_->brake(); }
-    void brake_softly() noexcept override { device_->brake_softly(); }
-    void release_brake() noexcept override { device_->release_brake(); }
-    [[nodiscard]] DeviceStatus status() const noexcept override { return device_->status(); }
+    void brake() noexcept override;
+    void brake_softly() noexcept override;
+    void release_brake() noexcept override;
+    [[nodiscard]] DeviceStatus status() const noexcept override;
 
 private:
     std::shared_ptr<HapticDevice> device_;

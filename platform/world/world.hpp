@@ -38,6 +38,8 @@ public:
     [[nodiscard]] Result<Done, Refusal> move(const Pose& pose) const;
     /// Gives the object another material, which tools in contact feel blended in within 50 ms.
     [[nodiscard]] Result<Done, Refusal> feel(const MaterialOptions& material) const;
+    /// Removes the object. Refused before the first frame, and like move() for the first object of
+    /// a published model while its server moves it (WorldOptions::follows_poses).
     [[nodiscard]] Result<Done, Refusal> remove() const;
 
 private:
@@ -68,7 +70,8 @@ public:
     [[nodiscard]] std::string why(const HandState& state) const;
 
     /// Moves a hand of the program (by_program()) and runs the next frame of the World, on the
-    /// calling thread. The first call opens models and devices, and may wait for them. `dt_s`: time
+    /// calling thread. The first call opens models and devices, and may wait for them; udp, dhd and
+    /// plugin devices of other hands need World::start(). `dt_s`: time
     /// since the last frame, in whole periods, at least one and at most a second; more than one
     /// fades the force as in a loop that misses frames. 0: one period. Waits for files; for a loop
     /// in real time use World::start().
@@ -107,7 +110,8 @@ struct WorldCounts
 /// Everything is added before the first frame, except objects that show a model which the World has
 /// already. A refused add() returns a handle that says why, and start() and the first step return
 /// the first of these refusals. One thread uses a World, except for its handles, state, counts()
-/// and stop(). The loop's assertions brake the devices and end the process (docs/safety.md).
+/// and stop(). A World that was moved from may only be destroyed or assigned to. The loop's
+/// assertions brake the devices and end the process (docs/safety.md).
 class World
 {
 public:
@@ -120,8 +124,9 @@ public:
     ~World();
 
     /// Adds an object that shows a model. Reads a file, or encodes a mesh, at once; a published
-    /// model is found at the start. Later than the first frame only for a model that the World has,
-    /// and while there are less than WorldOptions::objects_max objects.
+    /// model is found at the start. Later than the first frame only for a file or a name that the
+    /// World has, and while there are less than WorldOptions::objects_max objects; further objects
+    /// of a mesh are added by a handle.
     WorldObject add(const WorldModel& model, const ObjectOptions& options = {});
     /// Adds an object that shows the same model as another one of this World; as above.
     WorldObject add(const WorldObject& like, const ObjectOptions& options = {});
@@ -144,8 +149,8 @@ public:
     /// device took a device's place.
     [[nodiscard]] Result<Done, Refusal> wait();
     /// Ends the loop once the forces have faded; any thread except the loop's own. A World that has
-    /// ended keeps its last states and never runs again. Refused if a recording or trace could not
-    /// be written; the loop has ended all the same.
+    /// ended keeps its last states, has closed its devices and never runs again. Refused if nothing
+    /// has run, or if a recording or trace could not be written; the loop has ended all the same.
     [[nodiscard]] Result<Done, Refusal> stop();
 
     /// Any thread: true while the loop of start() runs.

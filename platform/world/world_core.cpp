@@ -5,6 +5,7 @@
 #include "platform/choices/messages.hpp"
 #include "platform/choices/option_ranges.hpp"
 #include "platform/choices/tool_words.hpp"
+#include "platform/devices/remote/info_fault.hpp"
 #include "platform/loop/assertion_brake.hpp"
 #include "platform/machine/posix/posix_clock.hpp"
 #include "platform/readers/file_readers.hpp"
@@ -20,9 +21,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <iterator>
+#include <system_error>
+#include <tuple>
 #include <utility>
+#include <variant>
 
 namespace tactus
 {
@@ -37,8 +42,21 @@ constexpr const char* kOwnThread = "called from a callback or device of the Worl
                                    "another thread";
 constexpr const char* kHasEnded = "the World has ended; make a new one";
 
+/// Refusal of a call from a callback or device, whose thread may hold the World's lock.
+std::optional<Refusal> fault_of_thread(std::string_view call)
+{
+    return hrtc::is_in_callback() ? std::optional(failure(fmt::format("{}: {}", call, kOwnThread)))
+                                  : std::nullopt;
+}
+
 /// Only one loop of a process can brake its devices when an assertion fails (AssertionBrake).
 std::atomic<bool> has_loop{false};
+
+/// Refusal of an argument or option out of its range.
+Refusal wrong_value(std::string text)
+{
+    return {std::move(text), true};
+}
 
 Material material_of(const MaterialOptions& options)
 {
@@ -56,9 +74,9 @@ Material material_of(const MaterialOptions& options)
 Result<Material, Refusal> checked_material(const MaterialOptions& options)
 {
     const Material material = material_of(options);
-    return is_in_range(material)
-               ? Result<Material, Refusal>(material)
-               : failure(fmt::format("material: out of range; allowed are {}", kMaterialRanges));
+    return is_in_range(material) ? Result<Material, Refusal>(material)
+                                 : wrong_value(fmt::format("material: out of range; allowed are {}",
+                                                           kMaterialRanges));
 }
 
 Result<Similarity, Refusal> checked_place(const Pose& pose)
@@ -66,7 +84,7 @@ Result<Similarity, Refusal> checked_place(const Pose& pose)
     const auto checked = checked_pose(pose);
     if (!checked)
     {
-        return failure(fmt::format(
+        return wrong_value(fmt::format(
             "pose: {} is out of range; allowed are a unit quaternion, a translation within {} m "
             "and a scale of {} to {}",
             kPoseRefusalNames[static_cast<std::size_t>(checked.error())], kPoseReachMax_m,
@@ -81,17 +99,17 @@ std::optional<Refusal> fault_of(const HandPose& pose)
                                              { return std::abs(x) < kGoalRange_m; }); // NaN fails.
     if (!is_near)
     {
-        return failure(fmt::format("position_m: ({}, {}, {}); each must be within {} m",
-                                   pose.position_m[0], pose.position_m[1], pose.position_m[2],
-                                   kGoalRange_m));
+        return wrong_value(fmt::format("position_m: ({}, {}, {}); each must be within {} m",
+                                       pose.position_m[0], pose.position_m[1], pose.position_m[2],
+                                       kGoalRange_m));
     }
     return is_unit(pose.rotation, kRotationTolerance)
                ? std::nullopt
                : std::optional(
-                     failure(fmt::format("rotation: ({}, {}, {}, {}) is no quaternion of "
-                                         "length 1 within {}",
-                                         pose.rotation[0], pose.rotation[1], pose.rotation[2],
-                                         pose.rotation[3], kRotationTolerance)));
+                     wrong_value(fmt::format("rotation: ({}, {}, {}, {}) is no quaternion of "
+                                             "length 1 within {}",
+                                             pose.rotation[0], pose.rotation[1], pose.rotation[2],
+                                             pose.rotation[3], kRotationTolerance)));
 }
 
 /// Fault of an option outside of its range; empty if it is in it or not given.
@@ -103,6 +121,14 @@ std::string fault_in(const char* name, const std::optional<Number>& value,
                                   static_cast<double>(*value) <= static_cast<double>(range.high));
     return is_in ? std::string()
                  : fmt::format("{}: {}; {} to {} is allowed", name, *value, range.low, range.high);
+}
+
+/// True for a device whose samples have the machine's time, and which needs the guards of start().
+bool runs_in_real_time(const hrtc::ToolOptions& tool)
+{
+    const hrtc::DeviceKind kind = tool.device.kind;
+    return kind == hrtc::DeviceKind::udp || kind == hrtc::DeviceKind::dhd ||
+           kind == hrtc::DeviceKind::plugin;
 }
 
 std::string name_of_file(const std::string& path)
@@ -140,6 +166,12 @@ Handle WorldCore::handle_or_refusal(Result<Handle, Refusal> made)
     {
         first_refusal_ = refusal;
     }
+    return refused_handle<Handle>(std::move(refusal));
+}
+
+template <typename Handle>
+Handle WorldCore::refused_handle(Refusal refusal)
+{
     Handle handle;
     handle.world_ = weak_from_this();
     handle.refused_ = std::make_shared<const Refusal>(std::move(refusal));
@@ -159,9 +191,9 @@ WorldObject WorldCore::handle_of(std::uint32_t number, std::uint32_t generation)
 
 WorldObject WorldCore::add(const WorldModel& model, const ObjectOptions& options)
 {
-    if (hrtc::is_in_callback())
+    if (auto fault = fault_of_thread("add()"))
     {
-        return handle_or_refusal<WorldObject>(failure(fmt::format("add(): {}", kOwnThread)));
+        return refused_handle<WorldObject>(*std::move(fault));
     }
     const std::lock_guard lock(mutex_);
     return handle_or_refusal(try_add(model, options));
@@ -169,25 +201,43 @@ WorldObject WorldCore::add(const WorldModel& model, const ObjectOptions& options
 
 WorldObject WorldCore::add(const WorldObject& like, const ObjectOptions& options)
 {
-    if (const auto refusal = why_not_change(like, "add()"))
+    if (auto fault = fault_of_thread("add()"))
     {
-        return handle_or_refusal<WorldObject>(*refusal);
+        return refused_handle<WorldObject>(*std::move(fault));
     }
     const std::lock_guard lock(mutex_);
-    const Phase phase = phase_.load();
-    const auto model =
-        phase == Phase::open
-            ? options_.objects[like.number_].model
-            : std::size_t{
-                  scene_->model_of({like.number_, like.generation_}).value_or(ModelId{0}).value};
-    return handle_or_refusal(place(model, options));
+    const auto model = model_of(like);
+    return handle_or_refusal(model ? place(model.value(), options)
+                                   : Result<WorldObject, Refusal>(model.error()));
+}
+
+/// Index of the model that another object shows; the handle may be of any state and World.
+Result<std::size_t, Refusal> WorldCore::model_of(const WorldObject& like) const
+{
+    if (auto refusal = why_not_change(like, "add()"))
+    {
+        return *std::move(refusal);
+    }
+    if (like.world_.lock().get() != this)
+    {
+        return failure("add(): the handle is of no object of this World");
+    }
+    if (phase_.load() == Phase::open)
+    {
+        return like.number_ < options_.objects.size()
+                   ? Result<std::size_t, Refusal>(options_.objects[like.number_].model)
+                   : failure("add(): a World with a scene has no other objects at the start");
+    }
+    const auto model = scene_->model_of({like.number_, like.generation_});
+    return model ? Result<std::size_t, Refusal>(std::size_t{model->value})
+                 : failure("add(): the object was removed");
 }
 
 Hand WorldCore::add(const WorldTool& tool, const WorldDevice& device, const HandOptions& options)
 {
-    if (hrtc::is_in_callback())
+    if (auto fault = fault_of_thread("add()"))
     {
-        return handle_or_refusal<Hand>(failure(fmt::format("add(): {}", kOwnThread)));
+        return refused_handle<Hand>(*std::move(fault));
     }
     const std::lock_guard lock(mutex_);
     return handle_or_refusal(try_add(tool, device, options));
@@ -195,6 +245,10 @@ Hand WorldCore::add(const WorldTool& tool, const WorldDevice& device, const Hand
 
 std::vector<WorldObject> WorldCore::add_scene(const std::string& path)
 {
+    if (auto fault = fault_of_thread("add_scene()"))
+    {
+        return {refused_handle<WorldObject>(*std::move(fault))};
+    }
     const std::lock_guard lock(mutex_);
     std::vector<WorldObject> objects;
     const auto refuse = [&](Refusal refusal)
@@ -214,6 +268,7 @@ std::vector<WorldObject> WorldCore::add_scene(const std::string& path)
     }
     options_.scene = path;
     has_files_ = true;
+    const std::lock_guard naming(names_mutex_);
     for (const hrtc::PlacedObject& object : scene.value().objects)
     {
         const auto number = static_cast<std::uint32_t>(objects.size());
@@ -226,6 +281,10 @@ std::vector<WorldObject> WorldCore::add_scene(const std::string& path)
 
 std::optional<Refusal> WorldCore::error() const
 {
+    if (auto fault = fault_of_thread("error()"))
+    {
+        return fault;
+    }
     const std::lock_guard lock(mutex_);
     return first_refusal_;
 }
@@ -244,6 +303,11 @@ Result<std::size_t, Refusal> WorldCore::take_model(const WorldModel& model)
     }
     else if (model.kind != WorldModel::Kind::file)
     {
+        if (phase_.load() != Phase::open) // Encoding takes long, and each mesh is a new model.
+        {
+            return failure("the World runs; add each mesh before the first frame, and further "
+                           "objects of it by their handles");
+        }
         auto encoded = meshes_.encode(model);
         if (!encoded)
         {
@@ -353,9 +417,10 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
         }
         key = *added;
     }
+    const std::string of_model = phase == Phase::open ? name_of_file(options_.models[model])
+                                                      : session_->controller().models()[model].name;
     const std::lock_guard lock(names_mutex_);
-    names_[key.number] =
-        !options.name.empty() ? options.name : name_of_file(options_.models[model]);
+    names_[key.number] = options.name.empty() ? of_model : options.name;
     return handle_of(key.number, key.generation);
 }
 
@@ -412,7 +477,7 @@ std::string WorldCore::set_shape(hrtc::ToolOptions& made, const WorldTool& tool)
     if (!tool.words.empty())
     {
         const std::string fault = hrtc::set_tool_shape(tool.words, made);
-        return fault.empty() ? "" : "tool: " + fault;
+        return fault.empty() ? take_named_mesh(made.mesh_model()) : "tool: " + fault;
     }
     hrtc::ToolChoice& shape = made.shape.emplace();
     shape.radius_m = tool.radius_m;
@@ -446,6 +511,16 @@ std::string WorldCore::set_shape(hrtc::ToolOptions& made, const WorldTool& tool)
     return refusal ? refusal->text : std::string();
 }
 
+/// Takes the model that a tool's words name; empty: none. Returns the fault; empty if there is
+/// none.
+std::string WorldCore::take_named_mesh(const std::string& name)
+{
+    const bool is_file = name.ends_with(".spm") || options_.readers.is_mesh_name(name);
+    const auto model = name.empty() ? Result<std::size_t, Refusal>(std::size_t{0})
+                                    : take_model(is_file ? model_file(name) : published(name));
+    return model ? std::string() : "tool: " + model.error().text;
+}
+
 /// Sets the tool's device. Returns the fault; empty if there is none.
 std::string WorldCore::set_device(hrtc::ToolOptions& made, const WorldDevice& device,
                                   HandParts& parts, std::size_t hand)
@@ -467,6 +542,10 @@ std::string WorldCore::set_device(hrtc::ToolOptions& made, const WorldDevice& de
         }
         return {};
     }
+    if (device.own == nullptr && !device.is_program)
+    {
+        return "device: neither words nor an object; by_program() is a hand without a device";
+    }
     if (!options.frame.empty() || !options.motion.empty() ||
         (device.own != nullptr && !options.limits.empty()))
     {
@@ -479,6 +558,11 @@ std::string WorldCore::set_device(hrtc::ToolOptions& made, const WorldDevice& de
         {
             return "limits: " + fault;
         }
+    }
+    const char* const fault = device.own != nullptr ? find_fault(device.own->info()) : nullptr;
+    if (fault != nullptr)
+    {
+        return fault;
     }
     parts.own = device.own;
     parts.is_held = device.own == nullptr;
@@ -536,18 +620,28 @@ std::optional<Refusal> WorldCore::check_options() const
     {
         if (!fault.empty())
         {
-            return failure(fault);
+            return wrong_value(fault);
         }
+    }
+    const auto is_smooth = [](const ToolOptions& tool)
+    {
+        return std::holds_alternative<PointCore>(tool.shape->core) &&
+               tool.shape->hull_file.empty() && tool.shape->mesh_model.empty();
+    };
+    if (asked.shading_m && std::ranges::none_of(options_.tools, is_smooth))
+    {
+        return wrong_value("shading_m: needs a point or a sphere as a tool");
     }
     const auto objects = static_cast<std::uint32_t>(options_.objects.size());
     if (asked.objects_max != 0 && asked.objects_max < objects)
     {
-        return failure(fmt::format("objects_max: {} is less than the {} at the start",
-                                   asked.objects_max, counted(objects, "object")));
+        return wrong_value(fmt::format("objects_max: {} is less than the {} at the start",
+                                       asked.objects_max, counted(objects, "object")));
     }
     return asked.name.empty() || is_valid_name(asked.name)
                ? std::nullopt
-               : std::optional(failure(fmt::format("name: '{}' is not {}", asked.name, kNameForm)));
+               : std::optional(
+                     wrong_value(fmt::format("name: '{}' is not {}", asked.name, kNameForm)));
 }
 
 /// Takes the World's options over into those of a run.
@@ -610,17 +704,38 @@ std::optional<Refusal> WorldCore::why_not(std::string_view call) const
     return std::nullopt;
 }
 
-/// Opens models and devices, and makes what the loop shares with the program.
+/// Opens models and devices, and makes what the loop shares with the program. A refusal changes
+/// nothing.
 std::optional<Refusal> WorldCore::open(bool is_stepped)
+{
+    try
+    {
+        return try_open(is_stepped);
+    }
+    catch (const std::exception& exception) // Too little memory, or no more threads.
+    {
+        close();
+        return failure(fmt::format("the World can't begin: {}", exception.what()));
+    }
+}
+
+std::optional<Refusal> WorldCore::try_open(bool is_stepped)
 {
     if (auto refusal = check_options())
     {
         return refusal;
     }
+    const auto real = std::ranges::find_if(options_.tools, &runs_in_real_time);
+    if (is_stepped && real != options_.tools.end())
+    {
+        return failure(fmt::format("step(): the device of hand {} runs in real time; use start()",
+                                   real - options_.tools.begin()));
+    }
     take_options(is_stepped);
-    const std::size_t threads = static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator("/proc/self/task"),
-                      std::filesystem::directory_iterator()));
+    std::error_code unread;
+    const auto threads =
+        std::distance(std::filesystem::directory_iterator("/proc/self/task", unread),
+                      std::filesystem::directory_iterator());
     const bool forks =
         options_.has_guardian &&
         std::ranges::any_of(options_.tools, hrtc::wants_guard, &hrtc::ToolOptions::device);
@@ -665,9 +780,15 @@ std::optional<Refusal> WorldCore::open(bool is_stepped)
 /// Undoes a refused open().
 void WorldCore::close()
 {
-    session_.reset();
+    release();
     tap_.reset();
     scene_.reset();
+}
+
+/// Closes models, devices and network. The last states stay.
+void WorldCore::release()
+{
+    session_.reset();
     for (HandParts& hand : hands_)
     {
         hand.held = nullptr;
@@ -676,9 +797,9 @@ void WorldCore::close()
 
 Result<Done, Refusal> WorldCore::start()
 {
-    if (hrtc::is_in_callback())
+    if (const auto fault = fault_of_thread("start()"))
     {
-        return failure(fmt::format("start(): {}", kOwnThread));
+        return *fault;
     }
     const std::lock_guard lock(mutex_);
     if (const auto refusal = why_not("start()"))
@@ -695,15 +816,21 @@ Result<Done, Refusal> WorldCore::start()
     {
         return failure("start(): another World of this process runs its loop; stop it first");
     }
-    std::optional<Refusal> refusal;
-    std::promise<void> decided;
+    std::promise<std::optional<Refusal>> decided;
+    auto decision = decided.get_future();
     is_stopping_.store(false);
+    try
     {
         const std::lock_guard joining(joining_);
-        keeper_ = std::thread([&] { keep_loop(refusal, decided); });
+        keeper_ = std::thread([this, decided = std::move(decided)]() mutable
+                              { keep_loop(std::move(decided)); });
     }
-    decided.get_future().wait();
-    if (refusal)
+    catch (const std::system_error& error)
+    {
+        has_loop.store(false);
+        return failure(fmt::format("start(): no thread can be started: {}", error.what()));
+    }
+    if (const auto refusal = decision.get())
     {
         join_keeper();
         has_loop.store(false);
@@ -712,30 +839,32 @@ Result<Done, Refusal> WorldCore::start()
     return Done{};
 }
 
-/// Body of the keeper's thread, which starts all others and ends them. Neither argument may be used
-/// once `decided` is set.
-void WorldCore::keep_loop(std::optional<Refusal>& refusal, std::promise<void>& decided)
+/// Body of the keeper's thread, which starts all others and ends them.
+void WorldCore::keep_loop(std::promise<std::optional<Refusal>> decided)
 {
     hrtc::install_assertion_brake();
-    refusal = open(false);
-    if (refusal)
+    auto refusal = open(false);
+    const bool is_refused = refusal.has_value();
+    phase_.store(is_refused ? Phase::open : Phase::running);
+    decided.set_value(std::move(refusal));
+    if (is_refused)
     {
-        decided.set_value();
         return;
     }
-    phase_.store(Phase::running);
-    decided.set_value();
     session_->running().wait("World");
-    done_ = session_->finish();
+    hrtc::FinishedRun done = session_->finish();
+    const std::lock_guard lock(mutex_);
+    done_ = std::move(done);
+    release();
+    has_loop.store(false); // Another World may start as soon as this one is seen to have ended.
     phase_.store(Phase::ended);
-    has_loop.store(false);
 }
 
 Result<Done, Refusal> WorldCore::wait()
 {
-    if (hrtc::is_in_callback())
+    if (const auto fault = fault_of_thread("wait()"))
     {
-        return failure(fmt::format("wait(): {}", kOwnThread));
+        return *fault;
     }
     join_keeper();
     const std::lock_guard lock(mutex_);
@@ -744,9 +873,9 @@ Result<Done, Refusal> WorldCore::wait()
 
 Result<Done, Refusal> WorldCore::stop()
 {
-    if (hrtc::is_in_callback())
+    if (const auto fault = fault_of_thread("stop()"))
     {
-        return failure(fmt::format("stop(): {}", kOwnThread));
+        return *fault;
     }
     is_stopping_.store(true); // Also ends the wait of start() and wait() on other threads.
     join_keeper();
@@ -754,6 +883,7 @@ Result<Done, Refusal> WorldCore::stop()
     if (phase_.load() == Phase::stepped)
     {
         done_ = session_->finish();
+        release();
         phase_.store(Phase::ended);
     }
     return finished();
@@ -794,24 +924,29 @@ Result<Done, Refusal> WorldCore::finished() const
 
 Result<Done, Refusal> WorldCore::step(double dt_s)
 {
+    if (const auto fault = fault_of_thread("step()"))
+    {
+        return *fault;
+    }
+    const std::lock_guard lock(mutex_);
     return run_step(dt_s, std::nullopt, {});
 }
 
 Result<HandState, Refusal> WorldCore::step(std::uint32_t hand, const HandPose& pose, double dt_s)
 {
+    if (const auto fault = fault_of_thread("step()"))
+    {
+        return *fault;
+    }
+    const std::lock_guard lock(mutex_);
     const auto done = run_step(dt_s, hand, pose);
     return done ? Result<HandState, Refusal>(tap_->last(hand)) : done.error();
 }
 
-/// Runs the next frame, after a hand was moved to the pose.
+/// Runs the next frame, after a hand was moved to the pose. With mutex_.
 Result<Done, Refusal> WorldCore::run_step(double dt_s, std::optional<std::uint32_t> hand,
                                           const HandPose& pose)
 {
-    if (hrtc::is_in_callback())
-    {
-        return failure(fmt::format("step(): {}", kOwnThread));
-    }
-    const std::lock_guard lock(mutex_);
     if (const auto refusal = why_not("step()"))
     {
         return *refusal;
@@ -822,7 +957,7 @@ Result<Done, Refusal> WorldCore::run_step(double dt_s, std::optional<std::uint32
     }
     if (!(dt_s >= 0.0 && std::isfinite(dt_s)))
     {
-        return failure(fmt::format("dt_s: {}; 0 or more is allowed", dt_s));
+        return wrong_value(fmt::format("dt_s: {}; 0 or more is allowed", dt_s));
     }
     if (hand && !hands_[*hand].is_held)
     {
@@ -834,6 +969,7 @@ Result<Done, Refusal> WorldCore::run_step(double dt_s, std::optional<std::uint32
     }
     if (phase_.load() == Phase::open)
     {
+        is_stopping_.store(false); // Set by a stop() before anything ran.
         if (const auto refusal = open(true))
         {
             return *refusal;
@@ -862,9 +998,9 @@ Result<Done, Refusal> WorldCore::run_step(double dt_s, std::optional<std::uint32
 
 Result<Done, Refusal> WorldCore::hold(std::uint32_t hand, const HandPose& pose)
 {
-    if (hrtc::is_in_callback())
+    if (const auto fault = fault_of_thread("hold()"))
     {
-        return failure(fmt::format("hold(): {}", kOwnThread));
+        return *fault;
     }
     if (const auto fault = fault_of(pose))
     {
@@ -895,14 +1031,10 @@ Result<Done, Refusal> WorldCore::hold(std::uint32_t hand, const HandPose& pose)
 
 // --- Objects -------------------------------------------------------------------------------------
 
-/// Reason why an object can't be changed; its handle may be of any state.
+/// Reason why an object can't be changed; its handle may be of any state. With mutex_.
 std::optional<Refusal> WorldCore::why_not_change(const WorldObject& object,
                                                  std::string_view call) const
 {
-    if (hrtc::is_in_callback())
-    {
-        return failure(fmt::format("{}: {}", call, kOwnThread));
-    }
     if (object.refused_ != nullptr)
     {
         return *object.refused_;
@@ -914,6 +1046,17 @@ std::optional<Refusal> WorldCore::why_not_change(const WorldObject& object,
     return std::nullopt;
 }
 
+/// Reason why an object of a server is the server's to move. With mutex_.
+std::optional<Refusal> WorldCore::why_served(const WorldObject& object, std::string_view call) const
+{
+    const bool is_served =
+        object.generation_ == 0 && object.number_ < is_served_.size() && is_served_[object.number_];
+    return is_served ? std::optional(failure(
+                           fmt::format("{}: a server moves '{}'; set follows_poses to false", call,
+                                       name_of(object.number_))))
+                     : std::nullopt;
+}
+
 Result<Done, Refusal> WorldCore::move(const WorldObject& object, const Pose& pose)
 {
     const auto place = checked_place(pose);
@@ -921,11 +1064,15 @@ Result<Done, Refusal> WorldCore::move(const WorldObject& object, const Pose& pos
     {
         return place.error();
     }
+    if (const auto fault = fault_of_thread("move()"))
+    {
+        return *fault;
+    }
+    const std::lock_guard lock(mutex_);
     if (const auto refusal = why_not_change(object, "move()"))
     {
         return *refusal;
     }
-    const std::lock_guard lock(mutex_);
     if (phase_.load() == Phase::open)
     {
         if (object.number_ >= options_.objects.size())
@@ -935,10 +1082,9 @@ Result<Done, Refusal> WorldCore::move(const WorldObject& object, const Pose& pos
         options_.objects[object.number_].place = place.value();
         return Done{};
     }
-    if (object.number_ < is_served_.size() && is_served_[object.number_] && object.generation_ == 0)
+    if (const auto refusal = why_served(object, "move()"))
     {
-        return failure(fmt::format("move(): a server moves '{}'; set follows_poses to false",
-                                   name_of(object.number_)));
+        return *refusal;
     }
     return scene_->try_move({object.number_, object.generation_}, place.value())
                ? Result<Done, Refusal>(Done{})
@@ -952,11 +1098,15 @@ Result<Done, Refusal> WorldCore::feel(const WorldObject& object, const MaterialO
     {
         return material.error();
     }
+    if (const auto fault = fault_of_thread("feel()"))
+    {
+        return *fault;
+    }
+    const std::lock_guard lock(mutex_);
     if (const auto refusal = why_not_change(object, "feel()"))
     {
         return *refusal;
     }
-    const std::lock_guard lock(mutex_);
     if (phase_.load() == Phase::open)
     {
         if (object.number_ >= options_.objects.size())
@@ -978,14 +1128,22 @@ Result<Done, Refusal> WorldCore::feel(const WorldObject& object, const MaterialO
 
 Result<Done, Refusal> WorldCore::remove(const WorldObject& object)
 {
+    if (const auto fault = fault_of_thread("remove()"))
+    {
+        return *fault;
+    }
+    const std::lock_guard lock(mutex_);
     if (const auto refusal = why_not_change(object, "remove()"))
     {
         return *refusal;
     }
-    const std::lock_guard lock(mutex_);
     if (phase_.load() == Phase::open)
     {
         return failure("remove(): an object leaves after the first frame; before it, don't add it");
+    }
+    if (const auto refusal = why_served(object, "remove()"))
+    {
+        return *refusal; // The server's poses would move the next object of this number.
     }
     return scene_->try_remove({object.number_, object.generation_})
                ? Result<Done, Refusal>(Done{})

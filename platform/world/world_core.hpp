@@ -81,6 +81,7 @@ private:
     };
 
     [[nodiscard]] Result<std::size_t, Refusal> take_model(const WorldModel& model);
+    [[nodiscard]] Result<std::size_t, Refusal> model_of(const WorldObject& like) const;
     [[nodiscard]] Result<WorldObject, Refusal> try_add(const WorldModel& model,
                                                        const ObjectOptions& options);
     [[nodiscard]] Result<WorldObject, Refusal> place(std::size_t model,
@@ -88,28 +89,35 @@ private:
     [[nodiscard]] Result<Hand, Refusal> try_add(const WorldTool& tool, const WorldDevice& device,
                                                 const HandOptions& options);
     [[nodiscard]] std::string set_shape(hrtc::ToolOptions& made, const WorldTool& tool);
+    [[nodiscard]] std::string take_named_mesh(const std::string& name);
     [[nodiscard]] std::string set_device(hrtc::ToolOptions& made, const WorldDevice& device,
                                          HandParts& parts, std::size_t hand);
     template <typename Handle>
     [[nodiscard]] Handle handle_or_refusal(Result<Handle, Refusal> made);
+    template <typename Handle>
+    [[nodiscard]] Handle refused_handle(Refusal refusal);
     [[nodiscard]] WorldObject handle_of(std::uint32_t number, std::uint32_t generation);
     [[nodiscard]] std::optional<Refusal> why_not(std::string_view call) const;
     [[nodiscard]] std::optional<Refusal> check_options() const;
     void take_options(bool is_stepped);
     [[nodiscard]] std::optional<Refusal> open(bool is_stepped);
+    [[nodiscard]] std::optional<Refusal> try_open(bool is_stepped);
     void close();
+    void release();
     void join_keeper();
-    void keep_loop(std::optional<Refusal>& refusal, std::promise<void>& decided);
+    void keep_loop(std::promise<std::optional<Refusal>> decided);
     [[nodiscard]] Result<Done, Refusal> run_step(double dt_s, std::optional<std::uint32_t> hand,
                                                  const HandPose& pose);
     [[nodiscard]] Result<Done, Refusal> finished() const;
     [[nodiscard]] std::optional<Refusal> why_not_change(const WorldObject& object,
                                                         std::string_view call) const;
+    [[nodiscard]] std::optional<Refusal> why_served(const WorldObject& object,
+                                                    std::string_view call) const;
     void tell_of_callbacks();
     [[nodiscard]] std::string name_of(std::uint32_t object) const;
 
-    /// Guards the members up to phase_. The keeper's thread never takes it: start() and stop() hold
-    /// it while they wait for that thread.
+    /// Guards the members up to has_files_, and session_ once the loop has ended. The keeper's
+    /// thread takes it only then: start() holds it while that thread opens models and devices.
     mutable std::mutex mutex_;
     WorldOptions asked_;
     hrtc::Options options_;

@@ -84,7 +84,7 @@ WorldDevice device(std::shared_ptr<HapticDevice> own)
 
 WorldDevice by_program(DeviceOptions options)
 {
-    return {.options = std::move(options)};
+    return {.options = std::move(options), .is_program = true};
 }
 
 } // namespace tactus

@@ -118,13 +118,16 @@ struct WorldDevice
     std::string words{}; ///< Words as for `hrtc --device`; empty: `own`, or else the program.
     DeviceOptions options{};
     std::shared_ptr<HapticDevice> own{};
+    bool is_program{false}; ///< True: no device; the program moves the hand.
 };
 
 /// Device by the words of `hrtc --device`: sim[:CLASS], udp[:[ADDRESS:]PORT], dhd[:INDEX],
-/// replay:FILE or plugin:FILE[,WORDS].
+/// replay:FILE or plugin:FILE[,WORDS]. udp, dhd and plugin need World::start(): a loop of one's own
+/// has neither the machine's time nor a supervisor.
 [[nodiscard]] WorldDevice device(std::string words, DeviceOptions options = {});
-/// Device of the program's own class; not null. The loop calls it as HapticDevice says. If read()
-/// or write() blocks, the supervisor brakes the devices.
+/// Device of the program's own class; not null, with an info() in range. The loop calls it as
+/// HapticDevice says. If read() or write() blocks, the supervisor of World::start() brakes the
+/// devices. The World lets go of it when its loop has ended.
 [[nodiscard]] WorldDevice device(std::shared_ptr<HapticDevice> own);
 /// No device: the program moves the hand by Hand::step() or Hand::hold(). `options.limits` are
 /// those of the device to which the program passes the force; the default is a desk device of 8 N.

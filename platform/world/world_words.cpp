@@ -27,6 +27,9 @@ constexpr std::pair<std::string_view, std::string_view> kNames[] = {
     {"--place", "pose"},
 };
 
+/// Characters before an option of a message; dashes behind others are those of a file's name.
+constexpr std::string_view kBefore = " '(";
+
 bool is_of_name(char c)
 {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-';
@@ -58,7 +61,8 @@ std::string world_words(std::string text)
     std::string said;
     for (std::size_t at = 0; at < text.size();)
     {
-        const bool is_option = text.compare(at, 2, "--") == 0 && at + 2 < text.size() &&
+        const bool begins = at == 0 || kBefore.find(text[at - 1]) != std::string_view::npos;
+        const bool is_option = begins && text.compare(at, 2, "--") == 0 && at + 2 < text.size() &&
                                std::islower(static_cast<unsigned char>(text[at + 2])) != 0;
         if (!is_option)
         {

@@ -5,6 +5,7 @@ a server, and its refusals. PAGE's programs run, those for a shell first."""
 import ast
 import doctest
 import os
+import pathlib
 import re
 import subprocess
 import sys
@@ -495,6 +496,11 @@ def check_worlds(scratch):
     refuses(ValueError, "positions_m: shape (3,); (3, 3) is needed",
             lambda: tactus.touch("torus.spm", path[0]))
     refuses(ValueError, "vertices: shape (2,)", lambda: tactus.touch(([0, 1], [[0, 1, 2]]), path))
+    triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    for corner in (-1, 0.5, float("nan"), 2.0**32):
+        refuses(ValueError, "faces: element 2 is ",
+                lambda: tactus.touch((triangle, [[0, 1, corner]]), path))
+    refuses(TypeError, "model: <class 'int'>; a path, or a pair", lambda: tactus.touch(7, path))
     refuses(tactus.Error, "tool: 'ball:1'", lambda: tactus.World().hand("ball:1"))
     refuses(tactus.Error, "the World has no hand", lambda: tactus.World().start())
     world = tactus.World(objects_max=1)
@@ -503,10 +509,11 @@ def check_worlds(scratch):
     refuses(ValueError, "rotation: shape (2, 2)",
             lambda: hand.step(path[0], rotation=np.zeros((2, 2))))
     refuses(ValueError, "rotation: not a rotation", lambda: hand.step(path[0], np.zeros((3, 3))))
-    refuses(tactus.Error, "position_m: ", lambda: hand.step([float("nan"), 0, 0]))
+    refuses(ValueError, "position_m: (nan, 0, 0)", lambda: hand.step([float("nan"), 0, 0]))
+    refuses(ValueError, "dt_s: -1; 0 or more", lambda: hand.step(path[0], dt_s=-1))
     felt = hand.path(path)
     expect(felt.force_n.shape == (500, 3) and felt.in_contact[-1], "a path does not touch")
-    expect(np.array_equal(tactus.touch("torus.spm", path).force_n, felt.force_n),
+    expect(np.array_equal(tactus.touch(pathlib.Path("torus.spm"), path).force_n, felt.force_n),
            "touch() feels something else")
     expect(hand.state().force_n == list(felt.force_n[-1]), "the state is another")
     part.remove()

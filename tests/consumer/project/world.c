@@ -31,6 +31,7 @@ int main(int argc, char** argv)
     static const double corners[12] = {0, 0, 0, 10, 0, 0, 0, 10, 0, 0, 0, 10};
     static const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
     const double above_m[3] = {0.0, 0.0, 1.0};
+    const double nowhere_m[3] = {0.0, 0.0, NAN};
     tactus_world_options options;
     tactus_world_object part;
     tactus_world_object solid;
@@ -77,8 +78,10 @@ int main(int argc, char** argv)
          "state before the first frame");
     need(tactus_world_step(world, hand, above_m, NULL, 0.0, &felt, &error) == TACTUS_DONE, "step");
     need(felt.frame == 1 && felt.withheld == 0, "state after a frame");
-    refuses(TACTUS_REFUSED, tactus_world_step(world, hand, above_m, NULL, -1.0, &felt, &error),
+    refuses(TACTUS_BAD_ARGUMENT, tactus_world_step(world, hand, above_m, NULL, -1.0, &felt, &error),
             "dt_s: -1; 0 or more is allowed");
+    refuses(TACTUS_BAD_ARGUMENT, tactus_world_hold(world, hand, nowhere_m, NULL, &error),
+            "position_m: (0, 0, nan)");
     need(tactus_world_feel(world, object, &material, &error) == TACTUS_DONE, "feel");
     need(tactus_world_move(world, second, &part.pose, &error) == TACTUS_DONE, "move");
     need(tactus_world_remove(world, second, &error) == TACTUS_DONE, "remove");
@@ -92,6 +95,7 @@ int main(int argc, char** argv)
     refuses(TACTUS_REFUSED, tactus_world_hold(world, hand, above_m, NULL, &error), "has ended");
     part.text = "nowhere.spm";
     refuses(TACTUS_REFUSED, tactus_world_add(other, &part, &object, &error), "nowhere.spm: ");
+    refuses(TACTUS_REFUSED, tactus_world_start(other, &error), "nowhere.spm: ");
     tactus_world_end(world);
     tactus_world_end(other);
     tactus_world_end(NULL);

@@ -7,10 +7,16 @@
 #include "tests/shared/test_model.hpp"
 #include "tests/unit/world/world_rig.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 /// Worlds in a loop of one's own.
@@ -164,6 +170,7 @@ TEST(World, objects_move_change_come_and_go_by_their_handles)
     EXPECT_EQ(line_of(Result<Done, Refusal>(second.remove())), "");
     EXPECT_EQ(line_of(second.move({})), "move(): the object was removed");
     EXPECT_EQ(line_of(second.remove()), "remove(): the object was removed before");
+    EXPECT_EQ(world.add(second).error(), "add(): the object was removed");
     const WorldObject third = world.add(part);
     ASSERT_TRUE(third) << third.error();
     const WorldObject fourth = world.add(part);
@@ -200,6 +207,60 @@ TEST(World, tools_of_all_shapes_are_taken)
     EXPECT_TRUE(world.step()) << line_of(world.step());
 }
 
+TEST(World, a_scene_is_beside_a_mesh_tool_and_its_objects_are_shown_again)
+{
+    const TemporaryFolder folder("world-scene");
+    std::filesystem::copy_file(small_model(0).path, folder.path() / "part.spm");
+    const std::string path = (folder.path() / "scene.gltf").string();
+    std::ofstream(path) << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "one", "extras": {"tactus": {"model": "part.spm"}}}]})";
+    World world({.memory_mib = 16, .objects_max = 2});
+    const std::vector<WorldObject> objects = world.add_scene(path);
+    ASSERT_EQ(objects.size(), 1U);
+    ASSERT_TRUE(objects[0]) << objects[0].error();
+    const Hand hand = world.add(mesh_tool(cube({.fit_diagonal_m = 0.01})));
+    const auto felt = hand.step({{0.5, 0.5, 0.5}});
+    ASSERT_TRUE(felt) << felt.error().text;
+    const WorldObject again = world.add(objects[0]);
+    EXPECT_TRUE(again) << again.error();
+    EXPECT_TRUE(hand.step({{0.5, 0.5, 0.5}}));
+
+    World early;
+    EXPECT_EQ(early.add(early.add_scene(path).front()).error(),
+              "add(): a World with a scene has no other objects at the start");
+}
+
+TEST(World, callbacks_may_not_call_their_world)
+{
+    const auto expect_refusal = [](const std::string& line)
+    { EXPECT_NE(line.find("called from a callback or device of the World"), line.npos) << line; };
+    std::vector<std::string> lines;
+    World world;
+    Hand hand;
+    const WorldObject part = world.add(cube(
+        {.unit = "mm", .progress = [&](double) { lines.push_back(world.add(cube()).error()); }}));
+    ASSERT_TRUE(part) << part.error();
+    EXPECT_FALSE(lines.empty());
+    std::ranges::for_each(lines, expect_refusal);
+    EXPECT_FALSE(world.error()) << "such a call is refused, the World goes on";
+    const HandForce force = [&](const ToolState&, const ToolOutput&) -> ExternalForce
+    {
+        lines = {line_of(part.move({})),    line_of(part.feel({})),
+                 line_of(part.remove()),    line_of(hand.hold({})),
+                 line_of(hand.step({})),    line_of(world.step()),
+                 line_of(world.start()),    line_of(world.stop()),
+                 world.add(part).error(),   world.add_scene("table.gltf").front().error(),
+                 world.add(cube()).error(), world.error().value_or(Refusal{}).text};
+        return {};
+    };
+    hand = world.add(sphere(kRadius_m), by_program(), {.force = force});
+    const auto felt = hand.step(above(0.02));
+    ASSERT_TRUE(felt) << felt.error().text;
+    EXPECT_EQ(lines.size(), 12U);
+    std::ranges::for_each(lines, expect_refusal);
+    EXPECT_TRUE(world.stop());
+}
+
 TEST(World, wrong_parts_are_refused_in_one_line_and_the_world_does_not_begin)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -228,6 +289,14 @@ TEST(World, wrong_parts_are_refused_in_one_line_and_the_world_does_not_begin)
     refused(parts.add(sphere(0.01), device("omega")), "device: 'omega'");
     refused(parts.add(sphere(0.01), device("sim", {.frame = "0,0,0"})), "frame: ");
     refused(parts.add(sphere(0.01), by_program(), {.fixture = "spring"}), "fixture: 'spring'");
+    refused(parts.add(tool("mesh:nowhere.spm")), "nowhere.spm: ");
+    refused(parts.add(sphere(0.01), device(std::shared_ptr<HapticDevice>())),
+            "device: neither words nor an object");
+    World other;
+    refused(parts.add(other.add(cube())), "add(): the handle is of no object of this World");
+    refused(parts.add(WorldObject()), "add(): the handle is of no object of this World");
+    EXPECT_NE(parts.add(model_file("no--where.spm")).error().find("no--where.spm: "),
+              std::string::npos);
     EXPECT_EQ(line_of(parts.step()), parts.error()->text);
     EXPECT_EQ(line_of(parts.start()), parts.error()->text);
 
@@ -240,6 +309,14 @@ TEST(World, wrong_parts_are_refused_in_one_line_and_the_world_does_not_begin)
     static_cast<void>(fast.add(cube()));
     static_cast<void>(fast.add(sphere(0.01)));
     EXPECT_EQ(line_of(fast.step()), "rate_hz: 50; 100 to 10000 is allowed");
+    World smooth({.shading_m = 0.001});
+    static_cast<void>(smooth.add(cube()));
+    static_cast<void>(smooth.add(box(0.01, 0.01, 0.01)));
+    EXPECT_EQ(line_of(smooth.step()), "shading_m: needs a point or a sphere as a tool");
+    World real;
+    static_cast<void>(real.add(cube()));
+    static_cast<void>(real.add(sphere(0.01), device("udp")));
+    EXPECT_EQ(line_of(real.step()), "step(): the device of hand 0 runs in real time; use start()");
     World small({.memory_mib = 0.25});
     static_cast<void>(small.add(model_file(small_model(0).path.string())));
     static_cast<void>(small.add(sphere(0.01)));
@@ -262,12 +339,15 @@ TEST(World, wrong_calls_are_refused_and_the_loop_goes_on)
     EXPECT_EQ(line_of(hand.step(above(0.02), -1.0)), "dt_s: -1; 0 or more is allowed");
     EXPECT_EQ(line_of(world->start()), "start(): the program runs this World by step()");
     EXPECT_FALSE(world->add(sphere(0.01)));
-    EXPECT_FALSE(world->add(cube()));
+    EXPECT_EQ(world->add(cube()).error(),
+              "the World runs; add each mesh before the first frame, and further objects of it by "
+              "their handles");
     EXPECT_TRUE(hand.step(above(0.02))) << "a late refusal must not end the World";
     EXPECT_TRUE(world->stop());
     EXPECT_EQ(hand.state().withheld, Withheld::ended);
     EXPECT_EQ(line_of(hand.step(above(0.02))), "step(): the World has ended; make a new one");
     EXPECT_EQ(line_of(part.move({})), "move(): the World has ended; make a new one");
+    EXPECT_EQ(world->add(part).error(), "add(): the World has ended; make a new one");
     world.reset();
     EXPECT_EQ(line_of(part.move({})), "the World of this handle is gone");
     EXPECT_EQ(line_of(hand.step({})), "the World of this handle is gone");

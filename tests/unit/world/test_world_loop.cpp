@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
@@ -119,8 +120,9 @@ TEST(WorldLoop, a_device_of_ones_own_that_disappears_ends_the_force_not_the_loop
     class OwnDevice final : public HapticDevice
     {
     public:
-        OwnDevice()
+        explicit OwnDevice(double mass_kg = 0.1)
         {
+            info_.limits.mass_kg = mass_kg;
             info_.name = "own";
             info_.workspace_radius_m = 1.0;
             info_.speed_max_m_per_s = 1.0;
@@ -149,8 +151,11 @@ TEST(WorldLoop, a_device_of_ones_own_that_disappears_ends_the_force_not_the_loop
     };
     World world(anywhere());
     static_cast<void>(world.add(cube()));
+    EXPECT_EQ(World().add(sphere(kRadius_m), device(std::make_shared<OwnDevice>(0.0))).error(),
+              "device: mass_kg must be finite and > 0");
     const auto own = std::make_shared<OwnDevice>();
     const Hand hand = world.add(sphere(kRadius_m), device(own));
+    const auto owners = own.use_count();
     const auto started = world.start();
     ASSERT_TRUE(started) << line_of(started);
     wait_for("a frame", [&] { return hand.state().withheld == Withheld::nothing; });
@@ -159,7 +164,9 @@ TEST(WorldLoop, a_device_of_ones_own_that_disappears_ends_the_force_not_the_loop
     EXPECT_NE(hand.why(hand.state()).find("the device disconnected"), std::string::npos);
     own->is_gone = false;
     wait_for("the return", [&] { return hand.state().withheld == Withheld::nothing; });
+    EXPECT_GT(own.use_count(), owners);
     EXPECT_TRUE(world.stop());
+    EXPECT_EQ(own.use_count(), owners) << "an ended loop keeps no device";
 }
 
 TEST(WorldLoop, one_loop_runs_in_a_process_and_a_refused_start_may_be_tried_again)
