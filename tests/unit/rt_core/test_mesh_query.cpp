@@ -80,7 +80,7 @@ struct AllPairs
     double coarse_lower{kInfinity};    ///< Pairs with a face above the tolerance, less errors.
     double tolerated_lower{kInfinity}; ///< Pairs with a coarse face within it, less errors.
     double surface{kInfinity};         ///< Least distance of faces that count as the surface.
-    double corners{kInfinity};         ///< Least distance of two corners.
+    double corners{kInfinity};         ///< Least distance of two corners, with a tolerance.
     std::set<MeetingFaces> meeting;
     std::set<MeetingFaces> in_contact;
     std::vector<std::tuple<double, FaceId, FaceId>> contacts; ///< Contacts in no order.
@@ -117,12 +117,9 @@ private:
     {
         const Triangle second = to_triangle(face.corners_m);
         const ClosestPoints closest = closest_points(first, second);
-        for (const Vec3& corner : first)
+        if ((tolerances_.tool | tolerances_.object) != 0)
         {
-            for (const Vec3& other : second)
-            {
-                corners = std::min(corners, (corner - other).norm());
-            }
+            add_corners(first, second);
         }
         const bool is_exact = tool_face.error == 0 && face.error == 0;
         const bool is_surface =
@@ -151,6 +148,17 @@ private:
         {
             in_contact.insert({tool_face.face, face.face});
             contacts.emplace_back(closest.distance, face.face, tool_face.face);
+        }
+    }
+
+    void add_corners(const Triangle& first, const Triangle& second)
+    {
+        for (const Vec3& corner : first)
+        {
+            for (const Vec3& other : second)
+            {
+                corners = std::min(corners, (corner - other).norm());
+            }
         }
     }
 
@@ -1309,7 +1317,7 @@ TEST(MeshQuery, with_a_tolerance_finds_what_measuring_all_pairs_finds)
     int tolerated = 0;
     int bounded = 0;
     int touching = 0;
-    for (int round = 0; round < 240; ++round)
+    for (int round = 0; round < 120; ++round)
     {
         const auto [tool, object] = Meshes(random, round % 4 == 0, round % 4 == 1, false);
         const std::uint32_t least = round % 3 == 0 ? 0 : 45; // Most faces are within the tolerance.
@@ -1360,9 +1368,9 @@ TEST(MeshQuery, with_a_tolerance_finds_what_measuring_all_pairs_finds)
             }
         }
     }
-    EXPECT_GT(tolerated, 60);
-    EXPECT_GT(bounded, 50);
-    EXPECT_GT(touching, 60);
+    EXPECT_GT(tolerated, 30);
+    EXPECT_GT(bounded, 25);
+    EXPECT_GT(touching, 30);
 }
 
 /// Copy of a rig whose faces are all exact.
