@@ -38,14 +38,9 @@ using Silences = std::vector<std::pair<int, int>>;
 TEST(HandshakeWatch, is_silent_after_its_patience_with_growing_pauses)
 {
     HandshakeWatch watch;
-    EXPECT_EQ(silences(watch, 0, 200, false, true), (Silences{{5, 3},
-                                                              {13, 6},
-                                                              {24, 9},
-                                                              {38, 12},
-                                                              {55, 12},
-                                                              {72, 12},
-                                                              {104, 12},
-                                                              {164, 12}}));
+    EXPECT_EQ(
+        silences(watch, 0, 200, false, true),
+        (Silences{{5, 3}, {13, 6}, {24, 9}, {38, 12}, {55, 12}, {72, 12}, {104, 12}, {164, 12}}));
 }
 
 TEST(HandshakeWatch, has_no_cause_without_a_server_or_with_a_connected_one)
