@@ -24,8 +24,8 @@ intrude() {
     intruded_with=0
     CYCLONEDDS_URI=$plain "$intruder" "$domain" "$@" 3 >intruder.log 2>&1 || intruded_with=$?
 }
-# intrude_until PATTERN ARGUMENT...: the same, again until a line of intruder.log matches, at most ten
-# times. On a busy machine a handshake can take longer than one attempt.
+# intrude_until PATTERN ARGUMENT...: the same, again until a line of intruder.log matches, at most
+# ten times. On a busy machine a handshake can take longer than one attempt.
 intrude_until() {
     for _ in {1..10}; do
         intrude "${@:2}"
