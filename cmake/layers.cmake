@@ -199,7 +199,7 @@ tactus_external(fmt platform/choices platform/controller platform/diagnose platf
 tactus_external(assimp host_tools/mesh tests)
 tactus_external(tbb host_tools tests)
 # The only modules that speak HTTP.
-tactus_external(httplib.h host_tools/spm_view host_tools/web)
+tactus_external(httplib.h host_tools/spm_view host_tools/web tests)
 tactus_external(oneapi host_tools tests)
 tactus_external(pybind11 host_tools/python)
 tactus_external(gtest tests)

@@ -3,9 +3,12 @@
 #include "host_tools/keys/authority.hpp"
 
 #include "transport/base/output_file.hpp"
+#include "transport/base/printable.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <ctime>
 #include <filesystem>
@@ -13,6 +16,7 @@
 #include <openssl/bn.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -118,6 +122,33 @@ Result<Identity, Refusal> read_identity(const fs::path& folder, const std::strin
     return identity;
 }
 
+/// Makes the folder, which is closed to other users. One with other files is refused, since it
+/// would be closed too.
+std::optional<Refusal> open_folder(const std::string& folder)
+{
+    std::error_code error;
+    const bool is_other = fs::is_directory(folder, error) && !fs::is_empty(folder, error) &&
+                          !fs::exists(fs::path(folder) / kIssued, error);
+    if (is_other)
+    {
+        return Refusal{fmt::format(
+            "--authority: {} has other files and no authority; choose an empty folder", folder)};
+    }
+    fs::create_directories(fs::path(folder) / kIssued, error);
+    if (error)
+    {
+        return Refusal{fmt::format("--authority: {}: {}", folder, error.message())};
+    }
+    fs::permissions(folder, fs::perms::owner_all, error);
+    if (error)
+    {
+        return Refusal{fmt::format("--authority: {} can't be closed to other users ({}); choose a "
+                                   "folder of a file system with access rights",
+                                   folder, error.message())};
+    }
+    return std::nullopt;
+}
+
 Result<Identity, Refusal> open_identity(const fs::path& folder, const std::string& name,
                                         std::time_t now)
 {
@@ -163,12 +194,9 @@ bool add_revoked(X509_CRL* crl, X509* certificate, std::time_t now)
 
 Result<Authority, Refusal> Authority::open(const std::string& folder, std::time_t now)
 {
-    std::error_code error;
-    fs::create_directories(fs::path(folder) / kIssued, error);
-    fs::permissions(folder, fs::perms::owner_all, error);
-    if (error)
+    if (const auto refusal = open_folder(folder))
     {
-        return Refusal{fmt::format("--authority: {}: {}", folder, error.message())};
+        return *refusal;
     }
     auto identities = open_identity(folder, kIdentityCa, now);
     auto permissions = open_identity(folder, kPermissionsCa, now);
@@ -180,6 +208,15 @@ Result<Authority, Refusal> Authority::open(const std::string& folder, std::time_
     authority.folder_ = folder;
     authority.identities_ = std::move(identities).value();
     authority.permissions_ = std::move(permissions).value();
+    authority.until_ = std::min(end_of(authority.identities_.certificate.get()),
+                                end_of(authority.permissions_.certificate.get()));
+    if (authority.until_ <= now)
+    {
+        return Refusal{fmt::format("--authority: the authority in {} ended {:%Y-%m-%d}; another "
+                                   "folder gets a new one, and all keys change",
+                                   folder, fmt::gmtime(authority.until_))};
+    }
+    std::error_code error;
     authority.crl_ = read_crl(fs::path(folder) / kCrl);
     if (!authority.crl_)
     {
@@ -232,7 +269,8 @@ Result<Done, Refusal> Authority::revoke(const std::string& name, std::time_t now
     }
     if (found == 0)
     {
-        return Refusal{fmt::format("--revoke: '{}' has no certificate of {}", name, folder_)};
+        return Refusal{
+            fmt::format("--revoke: '{}' has no certificate of {}", printable(name), folder_)};
     }
     return Done{};
 }
@@ -258,12 +296,15 @@ Result<Done, Refusal> Authority::renew_crl(std::time_t from, std::time_t until)
     return Done{};
 }
 
-bool Authority::vouches_for(const Identity& identity, std::time_t now) const
+bool Authority::vouches_for(const Identity& identity, const std::string& name,
+                            std::time_t now) const
 {
     X509* certificate = identity.certificate.get();
+    const Name subject = subject_of(name);
     return X509_verify(certificate, identities_.key.get()) == 1 &&
-           X509_cmp_time(X509_get0_notAfter(certificate), &now) > 0 &&
-           !is_revoked_by(crl_.get(), certificate);
+           X509_check_private_key(certificate, identity.key.get()) == 1 && subject &&
+           X509_NAME_cmp(X509_get_subject_name(certificate), subject.get()) == 0 &&
+           end_of(certificate) > now && !is_revoked_by(crl_.get(), certificate);
 }
 
 std::string Authority::sign(const std::string& document) const
@@ -292,6 +333,12 @@ std::string Authority::permissions_ca() const
 std::string Authority::crl() const
 {
     return text_of(crl_.get());
+}
+
+std::time_t end_of(const X509* certificate)
+{
+    std::tm parts{};
+    return ASN1_TIME_to_tm(X509_get0_notAfter(certificate), &parts) == 1 ? timegm(&parts) : 0;
 }
 
 std::string text_of(X509* certificate)

@@ -31,7 +31,8 @@ class Authority
 {
 public:
     /// Makes the folder if it is missing, with authorities that are valid for ten years from `now`.
-    /// Refused if a file can't be read or written.
+    /// Refused if a file can't be read or written, if other users can't be kept out, if the folder
+    /// has other files only, and if an authority has ended.
     [[nodiscard]] static Result<Authority, Refusal> open(const std::string& folder,
                                                          std::time_t now);
 
@@ -43,8 +44,12 @@ public:
     /// Signs the list of revoked certificates for another period.
     [[nodiscard]] Result<Done, Refusal> renew_crl(std::time_t from, std::time_t until);
 
-    /// True if the certificate is of this authority, has not expired and is not revoked.
-    [[nodiscard]] bool vouches_for(const Identity& identity, std::time_t now) const;
+    /// True if the certificate is of this authority for CN=`name`, belongs to the key, has not
+    /// expired and is not revoked.
+    [[nodiscard]] bool vouches_for(const Identity& identity, const std::string& name,
+                                   std::time_t now) const;
+    /// End of the authorities, the earlier.
+    [[nodiscard]] std::time_t until() const noexcept { return until_; }
     /// The document in S/MIME, signed by the permissions authority; empty on failure.
     [[nodiscard]] std::string sign(const std::string& document) const;
 
@@ -60,7 +65,11 @@ private:
     Identity identities_;
     Identity permissions_;
     openssl::Crl crl_;
+    std::time_t until_{};
 };
+
+/// End of the certificate's validity.
+[[nodiscard]] std::time_t end_of(const X509* certificate);
 
 /// The object in PEM.
 [[nodiscard]] std::string text_of(X509* certificate);

@@ -59,12 +59,14 @@ constexpr std::string_view kDocument = R"(<?xml version="1.0" encoding="UTF-8"?>
 {}</dds>
 )";
 
+/// All readers of a writer have its keys: without authentication of the origin, one of them could
+/// send to the others in the writer's name.
 constexpr std::string_view kGovernance = R"(<domain_access_rules><domain_rule>
 <domains><id>{}</id></domains>
 <allow_unauthenticated_participants>false</allow_unauthenticated_participants>
 <enable_join_access_control>true</enable_join_access_control>
-<discovery_protection_kind>ENCRYPT</discovery_protection_kind>
-<liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>
+<discovery_protection_kind>ENCRYPT_WITH_ORIGIN_AUTHENTICATION</discovery_protection_kind>
+<liveliness_protection_kind>ENCRYPT_WITH_ORIGIN_AUTHENTICATION</liveliness_protection_kind>
 <rtps_protection_kind>NONE</rtps_protection_kind>
 <topic_access_rules><topic_rule>
 <topic_expression>*</topic_expression>
@@ -72,7 +74,7 @@ constexpr std::string_view kGovernance = R"(<domain_access_rules><domain_rule>
 <enable_liveliness_protection>true</enable_liveliness_protection>
 <enable_read_access_control>true</enable_read_access_control>
 <enable_write_access_control>true</enable_write_access_control>
-<metadata_protection_kind>ENCRYPT</metadata_protection_kind>
+<metadata_protection_kind>ENCRYPT_WITH_ORIGIN_AUTHENTICATION</metadata_protection_kind>
 <data_protection_kind>NONE</data_protection_kind>
 </topic_rule></topic_access_rules>
 </domain_rule></domain_access_rules>

@@ -56,8 +56,12 @@ struct Period
 /// Drop-in for systemd, which gives the keys to a service with a separate user.
 std::string credentials()
 {
-    std::string text = "# For /etc/systemd/system/NAME.service.d: the service reads its keys in "
-                       "/run/credentials/NAME.service\n[Service]\n";
+    std::string text =
+        "# For /etc/systemd/system/NAME.service.d: the service reads its keys in "
+        "/run/credentials/NAME.service\n"
+        "# A clock before the certificates is refused: systemd-time-wait-sync.service "
+        "waits for the time.\n"
+        "[Unit]\nAfter=time-sync.target\n[Service]\n";
     for (const char* file : dds::kKeyFiles)
     {
         text += fmt::format("LoadCredential={0}:/etc/tactus/{1}/{0}\n", file, kFolder);
@@ -70,13 +74,14 @@ bool has(const std::vector<std::string>& names, const std::string& name)
     return std::ranges::find(names, name) != names.end();
 }
 
-/// The present identity of the folder if it is still valid, otherwise an empty one.
-Identity kept_identity(const fs::path& folder, const Authority& authority, std::time_t now)
+/// The present identity of the folder if it is still valid for this name, otherwise an empty one.
+Identity kept_identity(const fs::path& folder, const std::string& name, const Authority& authority,
+                       std::time_t now)
 {
     Identity identity{openssl::read_certificate(folder / dds::kIdentityFile),
                       openssl::read_key(folder / dds::kKeyFile)};
     const bool is_kept =
-        identity.certificate && identity.key && authority.vouches_for(identity, now);
+        identity.certificate && identity.key && authority.vouches_for(identity, name, now);
     return is_kept ? std::move(identity) : Identity{};
 }
 
@@ -98,13 +103,6 @@ std::optional<Refusal> write_files(const fs::path& folder, const std::vector<Arc
     return refusal ? refusal : write_text(archive(kFolder, files, now), folder.string() + ".tar");
 }
 
-std::time_t end_of(const X509* certificate)
-{
-    std::tm parts{};
-    ASN1_TIME_to_tm(X509_get0_notAfter(certificate), &parts);
-    return timegm(&parts);
-}
-
 Result<IssuedKeys, Refusal> make_member(const Site& site, const Member& member,
                                         Authority& authority, const Period& period)
 {
@@ -112,7 +110,7 @@ Result<IssuedKeys, Refusal> make_member(const Site& site, const Member& member,
     Identity identity;
     if (!has(site.renewed, member.name))
     {
-        identity = kept_identity(folder, authority, period.now);
+        identity = kept_identity(folder, member.name, authority, period.now);
     }
     const bool is_new = !identity.certificate;
     if (is_new)
@@ -124,16 +122,21 @@ Result<IssuedKeys, Refusal> make_member(const Site& site, const Member& member,
         }
         identity = std::move(issued).value();
     }
-    const std::vector<ArchivedFile> files{
-        {dds::kIdentityCaFile, authority.identity_ca()},
-        {dds::kPermissionsCaFile, authority.permissions_ca()},
-        {dds::kIdentityFile, text_of(identity.certificate.get())},
-        {dds::kKeyFile, text_of(identity.key.get()), true},
-        {dds::kGovernanceFile, authority.sign(governance(site.domain))},
-        {dds::kPermissionsFile, authority.sign(permissions(member.role, member.name, site.domain,
-                                                           period.from, period.until))},
-        {dds::kCrlFile, authority.crl()},
-        {kCredentialsFile, credentials()}};
+    const std::string signed_governance = authority.sign(governance(site.domain));
+    const std::string rights = authority.sign(
+        permissions(member.role, member.name, site.domain, period.from, period.until));
+    if (signed_governance.empty() || rights.empty())
+    {
+        return Refusal{fmt::format("the rights of '{}' can't be signed", member.name)};
+    }
+    const std::vector<ArchivedFile> files{{dds::kIdentityCaFile, authority.identity_ca()},
+                                          {dds::kPermissionsCaFile, authority.permissions_ca()},
+                                          {dds::kIdentityFile, text_of(identity.certificate.get())},
+                                          {dds::kKeyFile, text_of(identity.key.get()), true},
+                                          {dds::kGovernanceFile, signed_governance},
+                                          {dds::kPermissionsFile, rights},
+                                          {dds::kCrlFile, authority.crl()},
+                                          {kCredentialsFile, credentials()}};
     if (const auto refusal = write_files(folder, files, period.now))
     {
         return *refusal;
@@ -146,12 +149,13 @@ Result<IssuedKeys, Refusal> make_member(const Site& site, const Member& member,
 Result<std::vector<IssuedKeys>, Refusal> make_keys(const Site& site, std::time_t now)
 {
     [[maybe_unused]] const OwnFiles own;
-    const Period period{now, now - kSlack_s, now + std::time_t{site.days} * kDay_s};
     auto authority = Authority::open(site.authority, now);
     if (!authority)
     {
         return authority.error();
     }
+    const Period period{now, now - kSlack_s,
+                        std::min(now + std::time_t{site.days} * kDay_s, authority.value().until())};
     for (const std::string& name : site.revoked)
     {
         if (const auto revoked = authority.value().revoke(name, now); !revoked)

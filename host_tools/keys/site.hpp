@@ -45,8 +45,9 @@ struct IssuedKeys
 };
 
 /// Makes the certificates that are missing, expired or to be renewed; valid ones stay. Signs rights
-/// and CRL for `days` from `now`. Writes a folder output/NAME for each member, and an archive
-/// output/NAME.tar with the same files in keys/. Refused if a file can't be read or written.
+/// and CRL for `days` from `now`, at most to the end of the authority. Writes a folder output/NAME
+/// for each member, and an archive output/NAME.tar with the same files in keys/. Refused if a file
+/// can't be read or written.
 [[nodiscard]] Result<std::vector<IssuedKeys>, Refusal> make_keys(const Site& site, std::time_t now);
 
 } // namespace tactus::keys

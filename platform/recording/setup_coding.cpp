@@ -160,11 +160,15 @@ Fault check(const ModelCapacities& capacities, std::uint32_t base_faces)
 {
     const auto [least, most] = std::minmax(
         {capacities.pages, capacities.index_pages, capacities.blocks, capacities.nodes});
-    if (least < 1 || most > kMaxCapacity || capacities.faces > kMaxCapacity)
+    if (least < 1 || most > kMaxCapacity)
     {
-        return "a pool has " +
-               std::to_string(least < 1 ? least : std::max(most, capacities.faces)) +
-               " slots; 1 to " + std::to_string(kMaxCapacity) + " are allowed";
+        return "a pool has " + std::to_string(least < 1 ? least : most) + " slots; 1 to " +
+               std::to_string(kMaxCapacity) + " are allowed";
+    }
+    if (capacities.faces > kMaxPoolFaces)
+    {
+        return "there is room for " + std::to_string(capacities.faces) + " faces; at most " +
+               std::to_string(kMaxPoolFaces) + " are allowed";
     }
     if (capacities.faces < base_faces)
     {

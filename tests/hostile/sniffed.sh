@@ -14,15 +14,16 @@ readonly sniff=$4 name=name-of-a-model
 ip link set lo up || fail 'no loopback'
 model bumpy-sphere-20000 bumpy.spm
 
-# sniff_run FILE: a run of two seconds, from before the server starts.
+# sniff_run FILE: a run of two seconds, from before the server starts to its end.
 sniff_run() {
-    python3 "$sniff" bumpy.spm 12 "$name" >sniffed.log 2>&1 &
+    python3 "$sniff" bumpy.spm "$name" >sniffed.log 2>&1 &
     local sniffer=$!
     started+=("$sniffer")
     wait_for_line sniffed.log ready
     start_publisher bumpy.spm --name "$name"
     contact=0 run_hrtc --model "$name" --device sim:touch --duration 2
     stop_publisher
+    kill -TERM "$sniffer"
     wait "$sniffer" || fault "$(cat sniffed.log)"
     sed 1d sniffed.log >"$1"
     cat "$1"

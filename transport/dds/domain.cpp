@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/dds/domain.hpp"
 
+#include "transport/base/counted.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/dds/loopback_sockets.hpp"
@@ -170,7 +171,8 @@ Refusal join_error(std::uint32_t id, std::int32_t code)
 }
 
 /// Time before the end of the keys with a warning at the start.
-constexpr std::time_t kSoon_s = 30 * 24 * 3'600;
+constexpr std::time_t kDay_s = 24 * 3'600;
+constexpr std::time_t kSoon_s = 30 * kDay_s;
 
 /// The keys of the choice; none if the domain is joined without.
 Result<std::optional<KeyFolder>, Refusal> take_keys(const DomainChoice& choice)
@@ -195,8 +197,9 @@ Result<std::optional<KeyFolder>, Refusal> take_keys(const DomainChoice& choice)
     if (const std::time_t left_s = keys.value().valid_until - now; left_s < kSoon_s)
     {
         log_message(LogLevel::warning, "dds",
-                    fmt::format("the keys of '{}' end in {} days: renew them with tactus-keys",
-                                keys.value().name, left_s / (24 * 3'600)));
+                    fmt::format("the keys of '{}' end in {}: renew them with tactus-keys",
+                                keys.value().name,
+                                counted(static_cast<std::uint64_t>(left_s / kDay_s), "day")));
     }
     return std::optional(std::move(keys).value());
 }

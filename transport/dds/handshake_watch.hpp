@@ -28,7 +28,8 @@ public:
 
     /// Takes the present state: `is_connected`, a server is connected; `is_discovered`, a server
     /// that was connected before is present, but none is connected. Returns the length of a silence
-    /// that is due now. The pauses between silences double up to a minute.
+    /// that is due now. The patience begins after a silence: the end of an earlier silence would
+    /// end a later one too. The pauses between their starts double up to a minute.
     [[nodiscard]] std::optional<std::chrono::seconds> step(Clock::time_point now, bool is_connected,
                                                            bool is_discovered) noexcept
     {
@@ -36,7 +37,7 @@ public:
         {
             *this = {};
         }
-        if (!is_discovered)
+        if (!is_discovered || now < silent_until_)
         {
             since_.reset();
             return std::nullopt;
@@ -48,12 +49,14 @@ public:
         }
         since_.reset();
         silence_ = std::min(silence_ + kSilence, kLongestSilence);
+        silent_until_ = now + silence_;
         pause_.begin(now);
         return silence_;
     }
 
 private:
     std::optional<Clock::time_point> since_; ///< Start of the present state without a connection.
+    Clock::time_point silent_until_{};       ///< End of the last silence.
     std::chrono::seconds silence_{0};        ///< Length of the last silence.
     Backoff pause_;
 };

@@ -70,6 +70,26 @@ bool is_open_to_others(const std::string& path)
     return !error && (rights & fs::perms::others_all) != fs::perms::none;
 }
 
+/// With another authority's certificate in the folder, its owner could be any server.
+std::string why_changeable(const std::string& folder)
+{
+    std::error_code error;
+    const auto is_changeable = [&](const std::string& path)
+    {
+        const fs::perms rights = fs::status(path, error).permissions();
+        return !error && (rights & fs::perms::others_write) != fs::perms::none;
+    };
+    if (is_changeable(folder))
+    {
+        return "other users may change the folder; chmod o-w protects it";
+    }
+    const auto* const file = std::ranges::find_if(
+        kKeyFiles, [&](const char* name) { return is_changeable(join_path(folder, name)); });
+    return file == kKeyFiles.end()
+               ? ""
+               : fmt::format("other users may change {}; chmod o-w protects it", *file);
+}
+
 /// Text about the invalid one of certificate, authority and CRL.
 std::string why_not_valid(const X509_STORE_CTX* context, const X509_CRL* crl, std::time_t now)
 {
@@ -91,6 +111,9 @@ std::string why_not_valid(const X509_STORE_CTX* context, const X509_CRL* crl, st
     case X509_V_ERR_CRL_HAS_EXPIRED:
         return fmt::format("{} is too old: it ended {}", kCrlFile,
                            date_text(time_of(X509_CRL_get0_nextUpdate(crl))));
+    case X509_V_ERR_UNABLE_TO_GET_CRL:
+    case X509_V_ERR_CRL_SIGNATURE_FAILURE:
+        return fmt::format("{} is not of {}", kCrlFile, kIdentityCaFile);
     case X509_V_ERR_CERT_REVOKED:
         return fmt::format("{} is revoked", kIdentityFile);
     default:
@@ -154,13 +177,20 @@ std::optional<std::string> verified_text(const std::string& path, X509* authorit
 std::optional<std::uint32_t> number_in(std::string_view text, std::string_view tag, std::size_t& at)
 {
     const std::size_t found = text.find(tag, at);
+    at = std::string_view::npos;
+    if (found == std::string_view::npos)
+    {
+        return std::nullopt;
+    }
+    std::string_view rest = text.substr(found + tag.size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
     std::uint32_t number = 0;
-    const char* begin = text.data() + std::min(found, text.size() - tag.size()) + tag.size();
-    const bool is_number =
-        found != std::string_view::npos &&
-        std::from_chars(begin, text.data() + text.size(), number).ec == std::errc();
-    at = is_number ? found + tag.size() : std::string_view::npos;
-    return is_number ? std::optional(number) : std::nullopt;
+    if (std::from_chars(rest.data(), rest.data() + rest.size(), number).ec != std::errc())
+    {
+        return std::nullopt;
+    }
+    at = found + tag.size();
+    return number;
 }
 
 /// True if a <domains> element of the document contains the domain, by <id> or <min> and <max>.
@@ -184,17 +214,22 @@ bool has_domain(std::string_view document, std::uint32_t domain)
     return false;
 }
 
+/// Checks a document that must contain `name`; for the governance that is empty.
 std::string check_document(const std::string& folder, const char* file, X509* authority,
-                           std::uint32_t domain)
+                           std::uint32_t domain, const std::string& name)
 {
     const auto text = verified_text(join_path(folder, file), authority);
     if (!text)
     {
         return fmt::format("{} was changed, or {} did not sign it", file, kPermissionsCaFile);
     }
-    return has_domain(*text, domain)
+    if (!has_domain(*text, domain))
+    {
+        return fmt::format("{} is for another domain than {}", file, domain);
+    }
+    return text->find(name) != std::string::npos
                ? ""
-               : fmt::format("{} is for another domain than {}", file, domain);
+               : fmt::format("{} gives no rights to '{}'", file, name);
 }
 
 std::string name_of(const X509* certificate)
@@ -233,19 +268,27 @@ std::string check_files(KeyFolder& keys, std::uint32_t domain, std::time_t now)
     {
         return fmt::format("{} is not the key of {}", kKeyFile, kIdentityFile);
     }
-    std::string fault = check_identity(identity.get(), identity_ca.get(), crl.get(), now);
-    for (const char* file : {kGovernanceFile, kPermissionsFile})
-    {
-        fault =
-            fault.empty() ? check_document(keys.path, file, permissions_ca.get(), domain) : fault;
-    }
     keys.name = name_of(identity.get());
     if (!is_valid_name(keys.name))
     {
         return fmt::format("{} is for no valid name", kIdentityFile);
     }
-    keys.valid_until = std::min(time_of(X509_get0_notAfter(identity.get())),
-                                time_of(X509_CRL_get0_nextUpdate(crl.get())));
+    const auto end_of = [](const Certificate& certificate)
+    { return time_of(X509_get0_notAfter(certificate.get())); };
+    keys.valid_until = std::min({end_of(identity), end_of(identity_ca), end_of(permissions_ca),
+                                 time_of(X509_CRL_get0_nextUpdate(crl.get()))});
+    std::string fault = check_identity(identity.get(), identity_ca.get(), crl.get(), now);
+    if (fault.empty() && end_of(permissions_ca) <= now)
+    {
+        fault = fmt::format("{} ended {}", kPermissionsCaFile, date_text(end_of(permissions_ca)));
+    }
+    const std::pair<const char*, std::string> documents[] = {{kGovernanceFile, ""},
+                                                             {kPermissionsFile, keys.name}};
+    for (const auto& [file, name] : documents)
+    {
+        fault = fault.empty() ? check_document(keys.path, file, permissions_ca.get(), domain, name)
+                              : fault;
+    }
     return fault;
 }
 
@@ -267,10 +310,8 @@ Result<KeyFolder, Refusal> read_key_folder(const std::string& path, std::uint32_
     {
         fault = fmt::format("other users may read {}; chmod 600 makes it a secret", kKeyFile);
     }
-    if (fault.empty())
-    {
-        fault = check_files(keys, domain, now);
-    }
+    fault = fault.empty() ? why_changeable(keys.path) : fault;
+    fault = fault.empty() ? check_files(keys, domain, now) : fault;
     if (!fault.empty())
     {
         return Refusal{fmt::format("--security: {}: {}", printable(path), fault)};

@@ -31,13 +31,14 @@ struct KeyFolder
 {
     std::string path; ///< Absolute path of the folder.
     std::string name; ///< Common name of the certificate; for a controller its name on the domain.
-    std::time_t valid_until{}; ///< End of the certificate or the CRL, the earlier.
+    std::time_t valid_until{}; ///< End of the certificate, its authorities or the CRL: the first.
 };
 
 /// Reads and checks a folder of keys. Refused in one line: a missing or broken file; a private key
-/// that other users may read or that does not belong to the certificate; a certificate or CRL that
-/// is not valid at `now`; a certificate that is revoked or of another authority; documents that
-/// were changed or are not for `domain`; domains above 230. Ordinary thread; reads files.
+/// that other users may read or that does not belong to the certificate; a folder or file that they
+/// may change; a certificate or CRL that is not valid at `now`; a certificate that is revoked or of
+/// another authority; documents that were changed, are not for `domain` or give no rights to the
+/// certificate's name; domains above 230. Ordinary thread; reads files.
 [[nodiscard]] Result<KeyFolder, Refusal> read_key_folder(const std::string& path,
                                                          std::uint32_t domain, std::time_t now);
 

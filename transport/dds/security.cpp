@@ -13,8 +13,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace tactus::dds
@@ -54,30 +56,87 @@ void tell_of_process(dds_qos* qos)
     }
 }
 
-/// Text of the XML elements, including those of named files, without comments.
-std::string configuration_text(const std::string& uri)
+constexpr std::string_view kBlanks = " \t\n\v\f\r";
+
+std::string without_comments(std::string text)
 {
-    std::string text;
-    for (std::size_t at = 0; at < uri.size();)
-    {
-        if (uri[at] == '<')
-        {
-            text += uri.substr(at); // Elements end the list of files.
-            break;
-        }
-        const std::size_t end = std::min(uri.find(',', at), uri.size());
-        std::string path = uri.substr(at, end - at);
-        path = path.starts_with("file://") ? path.substr(7) : path;
-        const auto bytes = read_file(path, kMostBytes);
-        text += bytes ? bytes.value() : "";
-        at = end + 1;
-    }
     for (std::size_t from = 0; (from = text.find("<!--", from)) != std::string::npos;)
     {
         const std::size_t end = text.find("-->", from);
         text.erase(from, end == std::string::npos ? end : end + 3 - from);
     }
     return text;
+}
+
+/// End of the elements at the beginning of `list`: the next comma between two elements, or the end.
+std::size_t end_of_elements(std::string_view list)
+{
+    for (std::size_t at = list.find('>'); at != std::string_view::npos; at = list.find('>', at + 1))
+    {
+        const std::size_t next = list.find_first_not_of(kBlanks, at + 1);
+        if (next != std::string_view::npos && list[next] == ',')
+        {
+            return next;
+        }
+    }
+    return list.size();
+}
+
+struct Configuration
+{
+    std::string text; ///< Elements in small letters, without comments, with a space for each blank.
+    bool lacks_file{false};      ///< True if a named file is missing: Cyclone refuses.
+    bool has_unread_file{false}; ///< True if a named file could not be searched.
+};
+
+void add_file(Configuration& configuration, const std::string& path)
+{
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+    {
+        configuration.lacks_file = true;
+        return;
+    }
+    auto bytes = read_file(path, kMostBytes);
+    configuration.has_unread_file = configuration.has_unread_file || !bytes;
+    configuration.text += bytes ? without_comments(std::move(bytes).value()) : "";
+}
+
+/// Reads a list of elements and files, separated by commas, as Cyclone does.
+Configuration read_configuration(const std::string& uri)
+{
+    constexpr std::string_view kFile = "file://";
+    Configuration configuration;
+    const std::string plain = without_comments(uri);
+    std::string_view list = plain;
+    const std::string separators = std::string(kBlanks) + ",";
+    for (std::size_t at = 0; (at = list.find_first_not_of(separators)) != std::string_view::npos;)
+    {
+        list.remove_prefix(at);
+        const bool is_file = list.front() != '<';
+        const std::size_t end =
+            is_file ? std::min(list.find(','), list.size()) : end_of_elements(list);
+        const std::string_view part = list.substr(0, end);
+        list.remove_prefix(end);
+        if (is_file)
+        {
+            add_file(configuration,
+                     std::string(part.substr(part.starts_with(kFile) ? kFile.size() : 0)));
+        }
+        else
+        {
+            configuration.text += part;
+        }
+    }
+    std::ranges::transform(
+        configuration.text, configuration.text.begin(),
+        [](char c)
+        {
+            const bool is_blank = kBlanks.find(c) != std::string_view::npos;
+            const bool is_capital = c >= 'A' && c <= 'Z';
+            return is_blank ? ' ' : is_capital ? static_cast<char>(c - 'A' + 'a') : c;
+        });
+    return configuration;
 }
 
 /// Value in quotes of the attribute `word`; empty if the element has none.
@@ -118,13 +177,18 @@ void protect(dds_qos* participant, const KeyFolder& keys)
 
 bool is_open_to_network(const std::string& cyclonedds_uri)
 {
-    const std::string text = configuration_text(cyclonedds_uri);
-    const std::string_view all = text;
-    if (text.empty() || all.find("<Security") != std::string_view::npos)
+    const Configuration configuration = read_configuration(cyclonedds_uri);
+    const std::string_view all = configuration.text;
+    if (cyclonedds_uri.empty() || configuration.lacks_file ||
+        all.find("<security") != std::string_view::npos)
     {
         return false;
     }
-    constexpr std::string_view kElement = "<NetworkInterface";
+    if (configuration.has_unread_file)
+    {
+        return true;
+    }
+    constexpr std::string_view kElement = "<networkinterface";
     std::size_t at = all.find(kElement);
     bool is_open = at == std::string_view::npos;
     for (; at != std::string_view::npos; at = all.find(kElement, at + 1))

@@ -297,6 +297,81 @@ TEST_F(KeysOfASite, leave_the_authority_to_its_user)
     }
 }
 
+TEST_F(KeysOfASite, that_others_may_change_are_refused)
+{
+    make(now);
+    const fs::path ca = keys_of("hand-1") / dds::kIdentityCaFile;
+    fs::permissions(ca, fs::perms::others_write, fs::perm_options::add);
+    EXPECT_EQ(why_refused(now), "other users may change identity_ca.pem; chmod o-w protects it");
+    fs::permissions(ca, fs::perms::others_write, fs::perm_options::remove);
+    EXPECT_EQ(why_refused(now), "");
+    fs::permissions(keys_of("hand-1"), fs::perms::others_write, fs::perm_options::add);
+    EXPECT_EQ(why_refused(now), "other users may change the folder; chmod o-w protects it");
+}
+
+TEST_F(KeysOfASite, with_the_rights_of_another_name_or_another_list_are_refused)
+{
+    make(now);
+    const std::string rights = text_in(keys_of("hand-1") / dds::kPermissionsFile);
+    put("hand-1", dds::kPermissionsFile, text_in(keys_of("hand-2") / dds::kPermissionsFile));
+    EXPECT_EQ(why_refused(now), "permissions.p7s gives no rights to 'hand-1'");
+    put("hand-1", dds::kPermissionsFile, rights);
+    EXPECT_EQ(why_refused(now), "");
+    Site theirs = site;
+    theirs.authority += "-of-a-stranger";
+    theirs.output += "-of-a-stranger";
+    ASSERT_TRUE(make_keys(theirs, now));
+    put("hand-1", dds::kCrlFile, text_in(fs::path(theirs.output) / "hand-1" / dds::kCrlFile));
+    EXPECT_EQ(why_refused(now), "crl.pem is not of identity_ca.pem");
+}
+
+/// A run that was interrupted between two files, and a folder that was renamed.
+TEST_F(KeysOfASite, that_do_not_belong_together_are_made_again)
+{
+    make(now);
+    put("hand-1", dds::kKeyFile, text_in(keys_of("hand-2") / dds::kKeyFile));
+    EXPECT_EQ(why_refused(now), "identity.key is not the key of identity.pem");
+    for (const IssuedKeys& keys : make(now))
+    {
+        EXPECT_EQ(keys.is_new, keys.member.name == "hand-1") << keys.member.name;
+    }
+    EXPECT_EQ(why_refused(now), "");
+    fs::remove_all(keys_of("hand-1"));
+    fs::rename(keys_of("hand-2"), keys_of("hand-1"));
+    make(now);
+    EXPECT_EQ(why_refused(now), "");
+}
+
+TEST_F(KeysOfASite, end_with_their_authority)
+{
+    constexpr int kDaysOfAuthority = 3'650;
+    make(now);
+    const std::time_t late = now + (kDaysOfAuthority - 10) * kOneDay;
+    make(late);
+    const auto read = dds::read_key_folder(keys_of("hand-1").string(), kDomain, late);
+    ASSERT_TRUE(read) << read.error().text;
+    EXPECT_NEAR(static_cast<double>(read.value().valid_until - late), 10.0 * kOneDay, 2.0);
+    const auto refused = make_keys(site, now + (kDaysOfAuthority + 1) * kOneDay);
+    ASSERT_FALSE(refused);
+    EXPECT_TRUE(refused.error().text.starts_with("--authority: the authority in " + site.authority +
+                                                 " ended "))
+        << refused.error().text;
+}
+
+TEST_F(KeysOfASite, leave_folders_with_other_files_alone)
+{
+    fs::create_directories(site.authority);
+    fs::permissions(site.authority, fs::perms::others_read, fs::perm_options::add);
+    const auto before = fs::status(site.authority).permissions();
+    std::ofstream(fs::path(site.authority) / "letter.txt") << "hello";
+    const auto refused = make_keys(site, now);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text,
+              "--authority: " + site.authority +
+                  " has other files and no authority; choose an empty folder");
+    EXPECT_EQ(fs::status(site.authority).permissions(), before);
+}
+
 /// Expected digits: those with which Cyclone 0.10.2 began the GUIDs of these certificates.
 TEST(CertificateDigits, are_those_of_cyclones_plugin)
 {

@@ -46,6 +46,19 @@ TEST(NetworkSecurity, a_configuration_is_open_that_names_more_than_loopback)
     EXPECT_FALSE(dds::is_open_to_network("<Security/>" + with_interfaces(kNetwork)));
 }
 
+/// Cyclone skips blanks and commas before each part, and the letters' case.
+TEST(NetworkSecurity, a_configuration_is_read_as_cyclone_reads_it)
+{
+    EXPECT_TRUE(dds::is_open_to_network(" "));
+    EXPECT_TRUE(dds::is_open_to_network("\n  " + with_interfaces(kNetwork)));
+    EXPECT_TRUE(dds::is_open_to_network(" ,\t" + with_interfaces(kNetwork)));
+    EXPECT_FALSE(dds::is_open_to_network("\n  " + with_interfaces(kLoopback) + "\n"));
+    EXPECT_FALSE(dds::is_open_to_network(with_interfaces("<networkinterface\n\tNAME='lo'/>")));
+    EXPECT_TRUE(dds::is_open_to_network(
+        with_interfaces(std::string(kLoopback) + "<networkinterface name='eth0'/>")));
+    EXPECT_TRUE(dds::is_open_to_network("<!-- a > , b -->" + with_interfaces(kNetwork)));
+}
+
 TEST(NetworkSecurity, the_files_of_a_configuration_are_looked_at)
 {
     const test::TemporaryFolder folder("uri");
@@ -56,6 +69,13 @@ TEST(NetworkSecurity, the_files_of_a_configuration_are_looked_at)
     EXPECT_TRUE(dds::is_open_to_network("file://" + network));
     EXPECT_TRUE(dds::is_open_to_network("file://" + loopback + ",file://" + network));
     EXPECT_FALSE(dds::is_open_to_network("file://" + loopback + "-missing")); // Cyclone refuses.
+    EXPECT_TRUE(dds::is_open_to_network(" file://" + network));
+    EXPECT_TRUE(dds::is_open_to_network(with_interfaces(kLoopback) + " ,file://" + network));
+    EXPECT_FALSE(dds::is_open_to_network(with_interfaces(kLoopback) + ",file://" + loopback));
+    const std::string large =
+        folder.write("large.xml", with_interfaces(kLoopback) + std::string(2U << 20U, ' '))
+            .string();
+    EXPECT_TRUE(dds::is_open_to_network("file://" + large));
 }
 
 TEST(NetworkSecurity, a_network_is_not_joined_without_keys_unless_that_is_asked_for)
@@ -99,6 +119,19 @@ TEST(Rights, name_a_controllers_own_partitions_alone)
     EXPECT_EQ(of_viewer.find("<publish>"), std::string::npos);
     EXPECT_EQ(of_viewer.find("chunks"), std::string::npos);
     EXPECT_NE(of_viewer.find("telemetry"), std::string::npos);
+}
+
+/// A controller could otherwise send motion to another one in the server's name.
+TEST(Rights, nothing_is_accepted_from_another_reader_in_the_writers_name)
+{
+    const std::string document = keys::governance(7);
+    for (const char* kind : {"discovery", "liveliness", "metadata"})
+    {
+        const std::string element = std::string(kind) + "_protection_kind>";
+        EXPECT_NE(document.find("<" + element + "ENCRYPT_WITH_ORIGIN_AUTHENTICATION</" + element),
+                  std::string::npos)
+            << kind;
+    }
 }
 
 } // namespace tactus

@@ -364,6 +364,8 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kModel, 0, {0}), "a pool has 0 slots; 1 to");
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x20}), "slots; 1 to");
     expect_refusal(with_bytes(kModel, 0, {0, 0, 0, 0x02}), "more than 4096 MiB");
+    expect_refusal(with_bytes(kModel, 8, {0, 0, 0, 0x01}),
+                   "room for 16777216 faces; at most 16777215 are allowed");
     expect_refusal(with_bytes(kModel, 8, {1, 0}), "room for 1 faces; the base mesh alone has 8");
     expect_refusal(with_bytes(kModel, 20, {2}),
                    "the switch of the cache is 2; 0 and 1 are allowed");
