@@ -18,6 +18,7 @@
 #include <set>
 #include <tuple>
 #include <utility>
+#include <variant>
 
 namespace tactus::hrtc
 {
@@ -210,6 +211,12 @@ std::optional<Refusal> set_hull(ToolChoice& tool, std::span<const Vec3> corners,
     tool.hull_vertices = std::make_shared<const std::vector<Vec3>>(std::move(vertices));
     tool.core = Hull::create(*tool.hull_vertices).value();
     return std::nullopt;
+}
+
+bool is_round(const ToolOptions& tool)
+{
+    return !tool.shape || (std::holds_alternative<PointCore>(tool.shape->core) &&
+                           tool.shape->hull_file.empty() && tool.shape->mesh_model.empty());
 }
 
 ToolChoice default_tool(double diagonal_m)

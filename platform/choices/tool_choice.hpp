@@ -19,6 +19,7 @@ namespace tactus::hrtc
 {
 
 struct Options;
+struct ToolOptions;
 
 /// Shape of a tool, as given by --tool.
 struct ToolChoice
@@ -44,6 +45,9 @@ struct ToolChoice
 /// begins the refusal of too many corners, or of one too far from the tool's origin.
 [[nodiscard]] std::optional<Refusal> set_hull(ToolChoice& tool, std::span<const Vec3> corners,
                                               const std::string& source);
+
+/// True for a point or a sphere, which alone feel shaded facets.
+[[nodiscard]] bool is_round(const ToolOptions& tool);
 
 /// Sphere for tools without --tool: its radius is 1 % of `diagonal_m`, clamped to the range of
 /// parse_tool().

@@ -20,7 +20,6 @@ constexpr std::array kAnswerNames{"exact", "separated", "bounded", "stale", "wit
 constexpr std::array kFeatureNames{"corner_0", "corner_1", "corner_2", "edge_0",
                                    "edge_1",   "edge_2",   "interior"};
 constexpr std::array kSideNames{"unsigned", "outside", "inside"};
-constexpr std::array kIntersectionNames{"open", "none", "proven"};
 /// Names in the order of ToolCore's kinds.
 constexpr std::array kCoreNames{"point", "segment", "box", "hull", "body", "mesh"};
 static_assert(kCoreNames.size() == std::variant_size_v<ToolCore>);

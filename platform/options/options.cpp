@@ -254,14 +254,9 @@ std::string check_materials(Options& options, const RawOptions& raw)
 }
 
 /// Fault of --force-shading; empty if none. Called after take_tools().
-std::string check_smooth(Options& options, const RawOptions& /*raw*/)
+std::string check_shading(Options& options, const RawOptions& /*raw*/)
 {
-    const auto is_sphere = [](const ToolOptions& tool)
-    {
-        return !tool.shape || (std::holds_alternative<PointCore>(tool.shape->core) &&
-                               tool.shape->hull_file.empty());
-    };
-    return options.shading_m > 0.0 && std::ranges::none_of(options.tools, is_sphere)
+    return options.shading_m > 0.0 && std::ranges::none_of(options.tools, &is_round)
                ? "--force-shading: needs a point or a sphere as --tool"
                : "";
 }
@@ -484,7 +479,7 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     {
         return fault;
     }
-    for (const auto check : {check_models, check_places, check_materials, check_smooth,
+    for (const auto check : {check_models, check_places, check_materials, check_shading,
                              check_device_key, check_faults})
     {
         if (const std::string fault = check(options, raw); !fault.empty())

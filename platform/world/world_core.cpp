@@ -623,12 +623,7 @@ std::optional<Refusal> WorldCore::check_options() const
             return wrong_value(fault);
         }
     }
-    const auto is_smooth = [](const ToolOptions& tool)
-    {
-        return std::holds_alternative<PointCore>(tool.shape->core) &&
-               tool.shape->hull_file.empty() && tool.shape->mesh_model.empty();
-    };
-    if (asked.shading_m && std::ranges::none_of(options_.tools, is_smooth))
+    if (asked.shading_m && std::ranges::none_of(options_.tools, &is_round))
     {
         return wrong_value("shading_m: needs a point or a sphere as a tool");
     }

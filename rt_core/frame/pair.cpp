@@ -287,8 +287,7 @@ void Pair::fit_tolerance() noexcept
     const FrameFault late_for = of_object_.closure.late_for | of_tool_.closure.late_for;
     tolerance_.fit(tolerance_range(), room_, late_for == FrameFault::none);
     of_object_.tolerance = tolerance_.code();
-    of_tool_.tolerance =
-        tolerance_.code() != 0 && mesh_ != nullptr ? mesh_->tool_tolerance(tolerance_.code()) : 0;
+    of_tool_.tolerance = mesh_ != nullptr ? mesh_->tool_tolerance(tolerance_.code()) : 0;
 }
 
 bool Pair::needs_coarser_model() const noexcept

@@ -6,7 +6,9 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/spm/ids.hpp"
 
+#include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 
 // Usable on any thread: plain values and pure functions. No call waits or allocates.
@@ -32,6 +34,11 @@ enum class Intersection : std::uint8_t
     /// Two faces that count as the surface meet, and one is coarse within the tolerance.
     within_tolerance,
 };
+inline constexpr std::size_t kIntersections = 4;
+static_assert(static_cast<std::size_t>(Intersection::within_tolerance) == kIntersections - 1);
+/// Names in the order of Intersection.
+inline constexpr std::array<const char*, kIntersections> kIntersectionNames{
+    "open", "none", "proven", "within_tolerance"};
 
 /// Results of a pair whose tool is a mesh.
 struct MeshReport

@@ -205,6 +205,19 @@ TEST(FrameExport, tells_every_value_under_its_name)
               std::vector<std::string>{});
 }
 
+TEST(FrameExport, names_each_intersection_of_two_meshes)
+{
+    MeshReport report;
+    Example example;
+    example.frame.pair_outputs[0].mesh = &report;
+    for (std::size_t i = 0; i < kIntersections; ++i)
+    {
+        report.intersection = static_cast<Intersection>(i);
+        const Json frame = Json::parse(exported("a.jsonl", example, 1));
+        EXPECT_EQ(frame.at("pairs").at(0).at("intersection"), kIntersectionNames.at(i));
+    }
+}
+
 /// A device may send an invalid rotation, which no program should have to read.
 TEST(FrameExport, does_not_know_a_rotation_that_is_none)
 {
