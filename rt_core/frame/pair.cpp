@@ -558,10 +558,38 @@ void Pair::lose_model() noexcept
     TACTUS_ASSERT(mesh_ == nullptr);
     TACTUS_ASSERT(of_object_.closure.target.is_none());
     is_model_here_ = false;
+    forget_refinement();
+}
+
+void Pair::forget_refinement() noexcept
+{
     for (RefineMemory& memory : refine_memories_)
     {
         memory.is_known = false;
     }
+}
+
+void Pair::follow(const SurfaceEdit& edit) noexcept
+{
+    region_of_interest_.forget();
+    look();
+    forget_refinement();
+    const Tool& tool = *parts_.tool;
+    if (mesh_ != nullptr || touches_ != nullptr || !tool.is_held())
+    {
+        return;
+    }
+    const double quantum_m = static_cast<double>(parts_.model.model->header.quantum_m());
+    const double entered_m =
+        tool.radius_m() / parts_.object->pose.scale * (1.0 - kTouchShare) - 2.0 * quantum_m;
+    const Vec3 center_m = region_of_interest_.core().center();
+    const auto enters = [&](const AddedFace& face)
+    {
+        const ClosestPoint closest =
+            closest_point_on_triangle(center_m, to_triangle(face.corners_m));
+        return std::sqrt(closest.distance_sq) < entered_m;
+    };
+    is_joined_ = is_joined_ && std::ranges::none_of(edit.added, enters);
 }
 
 /// Bounds on the distance by the model's box: the surface lies in it and touches each of its sides.

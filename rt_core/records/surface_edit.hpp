@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/model_id.hpp"
+#include "rt_core/math/aabb.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/spm/ids.hpp"
 
@@ -37,6 +38,7 @@ struct SurfaceEdit
     std::uint32_t revision{0}; ///< Number of the edit for this model, from 1, without gaps.
     std::span<const FaceId> removed;
     std::span<const AddedFace> added;
+    Aabb removed_m; ///< Box that holds the removed source faces; empty without any. Model frame.
 };
 
 /// Reasons why a frame refused an edit; the model is unchanged.

@@ -40,6 +40,9 @@ public:
     /// Keeps a query's answer, which holds for the present place.
     void remember(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
+    /// Forgets the last answer, since the surface is another one.
+    void forget() noexcept { has_known_ = false; }
+
     /// Core of the tool at its proxy, in the model's frame.
     [[nodiscard]] const PlacedCore& core() const noexcept { return core_; }
     [[nodiscard]] const CoreCover& cover() const noexcept { return cover_; }
