@@ -42,7 +42,10 @@ public:
     }
 
     /// True for the id of an added face.
-    [[nodiscard]] bool is_added(FaceId face) const noexcept { return face.value >= face_ids_; }
+    [[nodiscard]] bool is_added(FaceId face) const noexcept
+    {
+        return face.value >= face_ids_ && can_be_edited();
+    }
     /// The added face of that id, which must be part of the surface (asserted).
     [[nodiscard]] const AddedFace& added(FaceId face) const noexcept
     {
