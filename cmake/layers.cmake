@@ -175,6 +175,8 @@ tactus_module(host_tools/spm_inspect ${host_layer} platform/program host_tools/m
 # The program that serves models and scenes.
 tactus_module(host_tools/spm_publish ${host_layer} platform/program host_tools/mesh
     host_tools/scene host_tools/web)
+# The program that runs the others under one name.
+tactus_module(host_tools/tactus ${host_layer} platform/program)
 # The program that makes the keys of a site.
 tactus_module(host_tools/keys ${host_layer} platform/program)
 # The program that shows a run in a browser; it plays recordings, too.
