@@ -359,7 +359,7 @@ std::optional<Refusal> Session::assemble()
                                                    controller_->scene_parts(), scene_, log_line);
         }
         auto topics = ServerTopics::create(*client_, *controller_, authorities_, std::move(keeper),
-                                           options_.shows_refinement_state);
+                                           options_.shows_refinement_state, log_line);
         if (!topics)
         {
             return failure(topics.error().text);

@@ -140,8 +140,8 @@ ServerTopics* SessionRun::connected_topics()
                 [recorder](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { recorder->name_object(number, generation, name); };
         }
-        parts_.topics->connect(mailbox_, telemetry_, make_front(), time_.clock().now(),
-                               std::move(names));
+        parts_.topics->connect(mailbox_, make_edit_mailbox(), telemetry_, make_front(),
+                               time_.clock().now(), std::move(names));
     }
     return parts_.topics;
 }
@@ -153,6 +153,16 @@ ProgramScene* SessionRun::connected_program()
         parts_.program->connect(mailbox_);
     }
     return parts_.program;
+}
+
+/// Mailbox of edits; null if no model can be edited.
+EditMailbox* SessionRun::make_edit_mailbox()
+{
+    if (parts_.topics->has_edits())
+    {
+        edit_mailbox_ = std::make_unique<EditMailbox>();
+    }
+    return edit_mailbox_.get();
 }
 
 /// Tap of the refinement state; null if no viewer gets it.
@@ -188,6 +198,7 @@ LoopParts SessionRun::loop_parts()
             .servers_gone = &transport_.servers_gone(),
             .starved = &transport_.starved(),
             .scene_mailbox = has_topics || parts_.program != nullptr ? &mailbox_ : nullptr,
+            .edit_mailbox = edit_mailbox_.get(),
             .telemetry = has_topics ? &telemetry_ : nullptr,
             .front = front_ ? &*front_ : nullptr,
             .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr,
