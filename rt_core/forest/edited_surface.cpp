@@ -148,8 +148,7 @@ bool EditedSurface::is_sound(const AddedFace& face) const noexcept
             }
         }
     }
-    return face.corners_m[0] != face.corners_m[1] && face.corners_m[1] != face.corners_m[2] &&
-           face.corners_m[2] != face.corners_m[0];
+    return true;
 }
 
 /// Marks all these faces as removed. False, with nothing changed, if one is not part of the surface

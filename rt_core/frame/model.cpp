@@ -447,7 +447,7 @@ ModelOutput Model::output() const noexcept
     const std::uint32_t index_pages = cache.index_pages_used();
     return {{pages.used(), pages_used_max, capacities.pages},
             {index_pages, index_pages, capacities.index_pages},
-            {forest.active_faces(), forest.active_faces_max(), capacities.faces},
+            {forest.active_faces(), forest.active_faces_max(), capacities.faces + edits.room()},
             {tree.blocks_used(), tree.blocks_used_max(), capacities.blocks},
             {tree.nodes_used(), tree.nodes_used_max(), capacities.nodes},
             forest.refined_records(),
@@ -465,9 +465,10 @@ std::optional<EditRefusal> Model::edit(const SurfaceEdit& change, WorkCounters& 
     if (!refusal)
     {
         forest.apply(change);
-        work.budget.spend(static_cast<std::uint32_t>(change.removed.size() + change.added.size()) *
-                          WorkCost::edited_face);
+        // An edit is made whole. Its work is not the frame's choice, so no stage gets less for it.
+        const WorkBudget budget = work.budget;
         refit(work, faults);
+        work.budget = budget;
     }
     return refusal;
 }

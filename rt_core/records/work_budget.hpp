@@ -36,7 +36,6 @@ struct WorkCost
     static constexpr std::uint32_t merge = 3'200;     ///< Merge without its refit.
     static constexpr std::uint32_t scan = 250;        ///< Record checked for merging.
     static constexpr std::uint32_t refit = 300;       ///< Refit of a block or node.
-    static constexpr std::uint32_t edited_face = 500; ///< Face that an edit removes or adds.
     static constexpr std::uint32_t index_group = 200; ///< Eight boxes of an index page.
     /// One sphere against eight boxes of an index page.
     static constexpr std::uint32_t index_sphere = 50;

@@ -127,15 +127,14 @@ TEST_F(EditedSurfaceTest, refuses_what_an_edit_cannot_be_and_keeps_everything)
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float q = quantum_m_;
     const auto extent = static_cast<float>(rig_->model().header.fields().extent_quanta[0]);
-    std::vector<AddedFace> bad(8, face(2));
+    std::vector<AddedFace> bad(7, face(2));
     bad[0].corners_m[1][2] = nan;
     bad[1].corners_m[0][0] = -q;
     bad[2].corners_m[0][0] = (extent + 1.0F) * q;
     bad[3].corners_m[2][1] = 1.5F * q;
-    bad[4].corners_m[1] = bad[4].corners_m[0];
-    bad[5].bucket = 1U << 31U;
-    bad[6].slot = kRoom;
-    bad[7].slot = 1;
+    bad[4].bucket = 1U << 31U;
+    bad[5].slot = kRoom;
+    bad[6].slot = 1;
     for (const AddedFace& one : bad)
     {
         const std::vector<AddedFace> added{face(0), one};
