@@ -32,6 +32,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::test
@@ -40,6 +41,7 @@ namespace
 {
 
 constexpr std::uint32_t kSettledFrames = 4'000; ///< Most frames until an answer is exact.
+constexpr std::uint32_t kRestingFrames = 20;    ///< Frames outside the model at the start.
 constexpr double kForceLimitRounding_n = 1e-9;
 
 // --- Tools ---------------------------------------------------------------------------------------
@@ -263,12 +265,12 @@ public:
 
     [[nodiscard]] EditFigures run()
     {
-        for (; frame_ < trial_.frames; ++frame_)
+        for (; frame_ < trial_.frames && !is_lost_; ++frame_)
         {
             edit();
             step(next_goal(), trial_.hardship.budgets);
         }
-        if (has_room_for_exactness())
+        if (has_room_for_exactness() && !is_lost_)
         {
             settle();
         }
@@ -323,7 +325,10 @@ private:
     [[nodiscard]] bool has_room_for_exactness() const
     {
         const std::string_view name = trial_.hardship.name;
-        return trial_.force_tolerance_n == 0.0 && name != "small-pools" && name != "few-pages";
+        const bool is_scarce = name == "small-pools" || name == "few-pages" ||
+                               name == "in-the-tool" ||
+                               (name == "no-cache" && spec_.wants_distance);
+        return trial_.force_tolerance_n == 0.0 && !is_scarce;
     }
 
     // --- Inputs ----------------------------------------------------------------------------------
@@ -331,6 +336,7 @@ private:
     void edit()
     {
         came_.clear();
+        is_edited_ = false;
         refused_.fill(0);
         if (frame_ < 5 || !random_.one_in(edits_each_))
         {
@@ -361,6 +367,7 @@ private:
         {
             came_.push_back(face.corners_m);
         }
+        is_edited_ = true;
         ++figures_.edits;
     }
 
@@ -372,6 +379,7 @@ private:
             const bool is_unknown = reason == EditRefusal::unknown_model;
             rig_.edit(edit->view(ModelId{is_unknown ? 7U : 0U}));
             ++refused_[static_cast<std::size_t>(reason)];
+            is_edited_ = true;
             ++figures_.refused;
         }
     }
@@ -379,7 +387,7 @@ private:
     /// Starts outside the model, so that no rigid tool starts in a face.
     [[nodiscard]] Vec3 next_goal()
     {
-        if (frame_ < 20)
+        if (frame_ < kRestingFrames)
         {
             const FaceTree& tree = soup_.oracle().tree();
             return tree.high_m() + Vec3::Constant(0.3 * trial_.model.diagonal_m);
@@ -391,7 +399,7 @@ private:
     {
         ToolState state;
         state.position_m = goal_m;
-        if (!is_sphere() && frame_ >= 20)
+        if (!is_sphere() && frame_ >= kRestingFrames)
         {
             const Eigen::AngleAxisd way(random_.between(-0.03, 0.03),
                                         (random_.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized());
@@ -419,14 +427,16 @@ private:
         const PairOutput& pair = output.pairs[0];
         figures_.exact += pair.kind == AnswerKind::exact ? 1 : 0;
         figures_.tolerated += pair.kind == AnswerKind::within_tolerance ? 1 : 0;
-        if (came_.empty() && refused_ == std::array<std::uint32_t, kEditRefusals>{})
+        if (!is_edited_) // An edit's work is beside the budget.
         {
             if (const Verdict verdict = broken_budget(output, budgets))
             {
                 flag(*verdict);
             }
         }
-        if (is_sphere() && trial_.force_tolerance_n == 0.0)
+        // A point at rest has no reach, so it requests nothing.
+        const bool reaches_nothing = spec_.radius_m == 0.0 && frame_ <= kRestingFrames;
+        if (is_sphere() && trial_.force_tolerance_n == 0.0 && !reaches_nothing)
         {
             if (const Verdict verdict = unexplained(output))
             {
@@ -457,6 +467,7 @@ private:
         const ModelOutput& model = output.models[0];
         if (output.scene.edits_refused != refused_)
         {
+            is_lost_ = true; // Everything later would follow from this.
             std::string text;
             for (std::size_t i = 0; i < kEditRefusals; ++i)
             {
@@ -585,7 +596,7 @@ private:
         {
             judge_mesh(pair);
         }
-        else if (frame_ % 4 == 0 || !came_.empty())
+        else if (frame_ % 4 == 0 || is_edited_)
         {
             const PlacedSolid placed(solid_, {pair.tool_rotation, pair.tool_m, 1.0});
             judge_rigid(pair, static_cast<double>(placed.to(soup_)));
@@ -619,7 +630,7 @@ private:
 
     void judge_mesh(const PairOutput& pair)
     {
-        if (frame_ % 8 != 0 && came_.empty())
+        if (frame_ % 8 != 0 && !is_edited_)
         {
             return;
         }
@@ -720,7 +731,7 @@ private:
                      exactly(contact.distance_m));
             }
         }
-        if (pair.contacts->is_complete && (frame_ % 8 == 0 || !came_.empty()) && !soup_.is_empty())
+        if (pair.contacts->is_complete && (frame_ % 8 == 0 || is_edited_) && !soup_.is_empty())
         {
             judge_complete(pair, placed);
         }
@@ -759,6 +770,7 @@ private:
     void settle()
     {
         came_.clear();
+        is_edited_ = false;
         refused_.fill(0);
         const Vec3 place_m = last_m_.value_or(Vec3(0.0, 0.0, 0.0));
         const auto is_done = [this] {
@@ -791,10 +803,12 @@ private:
     std::uint32_t frame_{0};
     Eigen::Quaterniond rotation_{Eigen::Quaterniond::Identity()};
     std::vector<Face> came_; ///< Faces that the present frame adds.
+    bool is_edited_{false};  ///< The present frame was sent edits, valid or not.
     std::array<std::uint32_t, kEditRefusals> refused_{};
     std::optional<Vec3> last_m_;  ///< Proxy after the last frame.
     std::optional<Vec3> trail_m_; ///< Last place of the proxy's path.
     bool was_joined_{false};
+    bool is_lost_{false}; ///< The frame's surface is not the soup's.
     AnswerKind kind_{AnswerKind::bounded};
     EditFigures figures_;
 };
@@ -841,9 +855,12 @@ TEST_P(Edits, are_answered_truly_for_spheres_under_this_hardship)
         }
     }
     expect_true(all);
-    EXPECT_GT(all.edits, all.truth.trials / 50);
+    EXPECT_GT(all.edits, kEditedModels * trial_length(1'000) / 25);
     EXPECT_GT(all.refused, 10U);
-    EXPECT_GT(all.merges, 0U);
+    if (std::string_view(GetParam()) != "static" && std::string_view(GetParam()) != "in-the-tool")
+    {
+        EXPECT_GT(all.merges, 0U);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Hardships, Edits,
@@ -874,7 +891,7 @@ TEST_P(EditsOfRigidTools, are_answered_truly_for_every_core)
         }
     }
     expect_true(all);
-    EXPECT_GT(all.edits, all.truth.trials / 50);
+    EXPECT_GT(all.edits, 100U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Hardships, EditsOfRigidTools,
