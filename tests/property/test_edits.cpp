@@ -523,7 +523,7 @@ private:
         {
             const int met =
                 crossings(solid_, {tool.proxy_rotation, tool.proxy_m, 1.0}, soup_.model());
-            if (met > 0)
+            if (met > 0 && !is_meeting_) // The first of several frames is enough.
             {
                 flag("the tool meets " + std::to_string(met) + " faces: contact " +
                      std::to_string(tool.in_contact) + ", halted " + std::to_string(tool.halted) +
@@ -531,6 +531,7 @@ private:
                      exactly(tool.force_n.norm()) + " N, answer " +
                      std::to_string(static_cast<int>(pair.kind)));
             }
+            is_meeting_ = met > 0;
         }
     }
 
@@ -815,7 +816,8 @@ private:
     std::optional<Vec3> last_m_;  ///< Proxy after the last frame.
     std::optional<Vec3> trail_m_; ///< Last place of the proxy's path.
     bool was_joined_{false};
-    bool is_lost_{false}; ///< The frame's surface is not the soup's.
+    bool is_meeting_{false}; ///< The tool met a face when that was last checked.
+    bool is_lost_{false};    ///< The frame's surface is not the soup's.
     AnswerKind kind_{AnswerKind::bounded};
     EditFigures figures_;
 };
