@@ -107,6 +107,28 @@ Vec3 middle_of(const Face& face)
     return (to_vec3(face[0]) + to_vec3(face[1]) + to_vec3(face[2])) / 3.0;
 }
 
+bool has_equal_corners(const Face& face)
+{
+    return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+}
+
+/// Place on the line through a face's first corners, as far from the second as that is from the
+/// first; the third corner if that place is outside the model's box.
+Vec3f on_line(const FinestMesh& mesh, const Face& face)
+{
+    Vec3f place{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        place[axis] = 2.0F * face[1][axis] - face[0][axis];
+        const float most = static_cast<float>(mesh.extent_quanta[axis]) * mesh.quantum_m;
+        if (place[axis] < 0.0F || place[axis] > most)
+        {
+            return face[2];
+        }
+    }
+    return place;
+}
+
 /// Normal as long as twice the area.
 Vec3 normal_of(const Face& face)
 {
@@ -508,14 +530,14 @@ void EditAuthor::add_lowered(OwnedEdit& edit, const std::vector<std::uint32_t>& 
             }
             corner = mesh.corner_at(quanta);
         }
-        if (!add(edit, face, mesh.faces[source].bucket))
+        if (!has_equal_corners(face) && !add(edit, face, mesh.faces[source].bucket))
         {
             return;
         }
     }
 }
 
-/// Random triangles; one in ten has no area.
+/// Random triangles; one in ten has its corners on a line.
 void EditAuthor::add_triangles(OwnedEdit& edit, const Vec3& near_m)
 {
     const double half_m = random_.between(0.002, 0.02) * soup_.model().diagonal_m;
@@ -526,7 +548,11 @@ void EditAuthor::add_triangles(OwnedEdit& edit, const Vec3& near_m)
         Face face = any_triangle(place_m, half_m);
         if (random_.one_in(10))
         {
-            face[2] = face[random_.below(2U)];
+            face[2] = on_line(soup_.source(), face);
+        }
+        if (has_equal_corners(face))
+        {
+            continue;
         }
         const bool is_far_bucket = random_.one_in(8);
         if (!add(edit, face,

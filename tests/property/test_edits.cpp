@@ -28,10 +28,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::test
@@ -40,6 +40,8 @@ namespace
 {
 
 constexpr std::uint32_t kSettledFrames = 4'000; ///< Most frames until an answer is exact.
+constexpr std::uint32_t kRestingFrames = 20;    ///< Frames outside the model at the start.
+constexpr double kCoreRounding_m = 1e-8; ///< Slack of bounds of a core to faces that are not exact.
 constexpr double kForceLimitRounding_n = 1e-9;
 
 // --- Tools ---------------------------------------------------------------------------------------
@@ -263,12 +265,12 @@ public:
 
     [[nodiscard]] EditFigures run()
     {
-        for (; frame_ < trial_.frames; ++frame_)
+        for (; frame_ < trial_.frames && !is_lost_; ++frame_)
         {
             edit();
             step(next_goal(), trial_.hardship.budgets);
         }
-        if (has_room_for_exactness())
+        if (has_room_for_exactness() && !is_lost_)
         {
             settle();
         }
@@ -299,7 +301,8 @@ private:
             is_sphere() ? trial_.hardship.radius_diag * trial_.model.diagonal_m : solid_.radius_m;
         spec.wants_contacts = random_.one_in(2);
         spec.wants_pairs = is_mesh_tool();
-        spec.query_only = trial_.tool == TrialTool::measuring;
+        spec.query_only =
+            trial_.tool == TrialTool::measuring || (!is_sphere() && random_.one_in(3));
         spec.wants_distance = trial_.tool == TrialTool::measuring;
         return spec;
     }
@@ -323,7 +326,10 @@ private:
     [[nodiscard]] bool has_room_for_exactness() const
     {
         const std::string_view name = trial_.hardship.name;
-        return trial_.force_tolerance_n == 0.0 && name != "small-pools" && name != "few-pages";
+        const bool is_scarce = name == "small-pools" || name == "few-pages" ||
+                               name == "in-the-tool" ||
+                               (name == "no-cache" && spec_.wants_distance);
+        return trial_.force_tolerance_n == 0.0 && !is_scarce;
     }
 
     // --- Inputs ----------------------------------------------------------------------------------
@@ -331,6 +337,7 @@ private:
     void edit()
     {
         came_.clear();
+        is_edited_ = false;
         refused_.fill(0);
         if (frame_ < 5 || !random_.one_in(edits_each_))
         {
@@ -361,6 +368,7 @@ private:
         {
             came_.push_back(face.corners_m);
         }
+        is_edited_ = true;
         ++figures_.edits;
     }
 
@@ -372,6 +380,7 @@ private:
             const bool is_unknown = reason == EditRefusal::unknown_model;
             rig_.edit(edit->view(ModelId{is_unknown ? 7U : 0U}));
             ++refused_[static_cast<std::size_t>(reason)];
+            is_edited_ = true;
             ++figures_.refused;
         }
     }
@@ -379,7 +388,7 @@ private:
     /// Starts outside the model, so that no rigid tool starts in a face.
     [[nodiscard]] Vec3 next_goal()
     {
-        if (frame_ < 20)
+        if (frame_ < kRestingFrames)
         {
             const FaceTree& tree = soup_.oracle().tree();
             return tree.high_m() + Vec3::Constant(0.3 * trial_.model.diagonal_m);
@@ -391,7 +400,7 @@ private:
     {
         ToolState state;
         state.position_m = goal_m;
-        if (!is_sphere() && frame_ >= 20)
+        if (!is_sphere() && frame_ >= kRestingFrames)
         {
             const Eigen::AngleAxisd way(random_.between(-0.03, 0.03),
                                         (random_.in_cube(1.0) + Vec3(0, 0, 1e-3)).normalized());
@@ -419,14 +428,16 @@ private:
         const PairOutput& pair = output.pairs[0];
         figures_.exact += pair.kind == AnswerKind::exact ? 1 : 0;
         figures_.tolerated += pair.kind == AnswerKind::within_tolerance ? 1 : 0;
-        if (came_.empty() && refused_ == std::array<std::uint32_t, kEditRefusals>{})
+        if (!is_edited_) // An edit's work is beside the budget.
         {
             if (const Verdict verdict = broken_budget(output, budgets))
             {
                 flag(*verdict);
             }
         }
-        if (is_sphere() && trial_.force_tolerance_n == 0.0)
+        // A point at rest has no reach, so it requests nothing.
+        const bool reaches_nothing = spec_.radius_m == 0.0 && frame_ <= kRestingFrames;
+        if (is_sphere() && trial_.force_tolerance_n == 0.0 && !reaches_nothing)
         {
             if (const Verdict verdict = unexplained(output))
             {
@@ -457,6 +468,7 @@ private:
         const ModelOutput& model = output.models[0];
         if (output.scene.edits_refused != refused_)
         {
+            is_lost_ = true; // Everything later would follow from this.
             std::string text;
             for (std::size_t i = 0; i < kEditRefusals; ++i)
             {
@@ -506,14 +518,20 @@ private:
         {
             judge_path(is_joined && !spec_.query_only);
         }
-        else if (is_joined && frame_ % 8 == 0 && soup_.model().faces.size() > 0)
+        else if (is_joined && !spec_.query_only && (frame_ % 8 == 0 || !came_.empty()) &&
+                 soup_.model().faces.size() > 0)
         {
             const int met =
                 crossings(solid_, {tool.proxy_rotation, tool.proxy_m, 1.0}, soup_.model());
-            if (met > 0)
+            if (met > 0 && !is_meeting_) // The first of several frames is enough.
             {
-                flag("the tool meets " + std::to_string(met) + " faces");
+                flag("the tool meets " + std::to_string(met) + " faces: contact " +
+                     std::to_string(tool.in_contact) + ", halted " + std::to_string(tool.halted) +
+                     ", over-constrained " + std::to_string(tool.over_constrained) + ", force " +
+                     exactly(tool.force_n.norm()) + " N, answer " +
+                     std::to_string(static_cast<int>(pair.kind)));
             }
+            is_meeting_ = met > 0;
         }
     }
 
@@ -585,7 +603,7 @@ private:
         {
             judge_mesh(pair);
         }
-        else if (frame_ % 4 == 0 || !came_.empty())
+        else if (frame_ % 4 == 0 || is_edited_)
         {
             const PlacedSolid placed(solid_, {pair.tool_rotation, pair.tool_m, 1.0});
             judge_rigid(pair, static_cast<double>(placed.to(soup_)));
@@ -602,12 +620,6 @@ private:
         judge_kind(pair, truth_m);
     }
 
-    /// A rigid tool's answer may leave out faces that change it by a sixteenth of the tolerance.
-    [[nodiscard]] double unmeasured_m() const
-    {
-        return is_sphere() ? 0.0 : trial_.force_tolerance_n / spec_.stiffness_n_per_m / 16.0;
-    }
-
     void judge_kind(const PairOutput& pair, double truth_m)
     {
         if (pair.kind == AnswerKind::exact && !(pair.upper_m - pair.lower_m <= slack_m(pair)))
@@ -616,7 +628,8 @@ private:
         }
         if (pair.kind == AnswerKind::within_tolerance &&
             !(trial_.force_tolerance_n > 0.0 &&
-              pair.lower_m >= truth_m - 2.0 * pair.tolerated_m - unmeasured_m() - slack_m(pair)))
+              pair.lower_m >= truth_m - 2.0 * pair.tolerated_m -
+                                  (is_sphere() ? slack_m(pair) : kCoreRounding_m)))
         {
             flag("within a tolerance of " + exactly(pair.tolerated_m) + ", but " +
                  exactly(pair.lower_m) + " for " + exactly(truth_m));
@@ -625,7 +638,7 @@ private:
 
     void judge_mesh(const PairOutput& pair)
     {
-        if (frame_ % 8 != 0 && came_.empty())
+        if (frame_ % 8 != 0 && !is_edited_)
         {
             return;
         }
@@ -726,7 +739,7 @@ private:
                      exactly(contact.distance_m));
             }
         }
-        if (pair.contacts->is_complete && (frame_ % 8 == 0 || !came_.empty()) && !soup_.is_empty())
+        if (pair.contacts->is_complete && (frame_ % 8 == 0 || is_edited_) && !soup_.is_empty())
         {
             judge_complete(pair, placed);
         }
@@ -765,6 +778,7 @@ private:
     void settle()
     {
         came_.clear();
+        is_edited_ = false;
         refused_.fill(0);
         const Vec3 place_m = last_m_.value_or(Vec3(0.0, 0.0, 0.0));
         const auto is_done = [this] {
@@ -797,10 +811,13 @@ private:
     std::uint32_t frame_{0};
     Eigen::Quaterniond rotation_{Eigen::Quaterniond::Identity()};
     std::vector<Face> came_; ///< Faces that the present frame adds.
+    bool is_edited_{false};  ///< The present frame was sent edits, valid or not.
     std::array<std::uint32_t, kEditRefusals> refused_{};
     std::optional<Vec3> last_m_;  ///< Proxy after the last frame.
     std::optional<Vec3> trail_m_; ///< Last place of the proxy's path.
     bool was_joined_{false};
+    bool is_meeting_{false}; ///< The tool met a face when that was last checked.
+    bool is_lost_{false};    ///< The frame's surface is not the soup's.
     AnswerKind kind_{AnswerKind::bounded};
     EditFigures figures_;
 };
@@ -808,6 +825,13 @@ private:
 EditFigures run_edit_trial(const EditTrial& trial)
 {
     return EditRun(trial).run();
+}
+
+std::string name_of_hardship(const testing::TestParamInfo<const char*>& one)
+{
+    std::string name = one.param;
+    std::ranges::replace(name, '-', '_');
+    return name;
 }
 
 class Edits : public testing::TestWithParam<const char*>
@@ -847,21 +871,19 @@ TEST_P(Edits, are_answered_truly_for_spheres_under_this_hardship)
         }
     }
     expect_true(all);
-    EXPECT_GT(all.edits, all.truth.trials / 50);
+    EXPECT_GT(all.edits, kEditedModels * trial_length(1'000) / 25);
     EXPECT_GT(all.refused, 10U);
-    EXPECT_GT(all.merges, 0U);
+    if (std::string_view(GetParam()) != "static" && std::string_view(GetParam()) != "in-the-tool")
+    {
+        EXPECT_GT(all.merges, 0U);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Hardships, Edits,
                          testing::Values("usual", "point", "K-1", "K-4", "starved", "small-pools",
                                          "few-pages", "no-cache", "lossy-link", "late-link",
                                          "in-the-tool", "static", "little-work"),
-                         [](const auto& one)
-                         {
-                             std::string name = one.param;
-                             std::ranges::replace(name, '-', '_');
-                             return name;
-                         });
+                         name_of_hardship);
 
 using EditsOfRigidTools = Edits;
 
@@ -880,17 +902,11 @@ TEST_P(EditsOfRigidTools, are_answered_truly_for_every_core)
         }
     }
     expect_true(all);
-    EXPECT_GT(all.edits, all.truth.trials / 50);
+    EXPECT_GT(all.edits, 100U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Hardships, EditsOfRigidTools,
-                         testing::Values("usual", "K-4", "late-link", "static"),
-                         [](const auto& one)
-                         {
-                             std::string name = one.param;
-                             std::ranges::replace(name, '-', '_');
-                             return name;
-                         });
+                         testing::Values("usual", "K-4", "late-link", "static"), name_of_hardship);
 
 using EditsWithinATolerance = Edits;
 
@@ -913,13 +929,7 @@ TEST_P(EditsWithinATolerance, are_answered_within_it)
 }
 
 INSTANTIATE_TEST_SUITE_P(Hardships, EditsWithinATolerance,
-                         testing::Values("usual", "small-pools", "few-pages"),
-                         [](const auto& one)
-                         {
-                             std::string name = one.param;
-                             std::ranges::replace(name, '-', '_');
-                             return name;
-                         });
+                         testing::Values("usual", "small-pools", "few-pages"), name_of_hardship);
 
 TEST(EditsAgain, give_the_same_bits)
 {
