@@ -413,7 +413,9 @@ main() {
             install_packages "${lists[@]}"
             build_targets all
             ;;
-        programs) build_programs spm_build spm_inspect spm_publish spm_view tactus-keys hrtc ;;
+        programs)
+            build_programs spm_build spm_inspect spm_publish spm_view tactus tactus-keys hrtc
+            ;;
         test)
             install_packages "${lists[@]}"
             [[ ! " ${more_options[*]} " =~ " -L "|bench|extended ]] || targets+=(tests_left_out)

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/edit/surface_editor.hpp"
 
+#include "host_tools/edit/merge_pieces.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
@@ -10,9 +11,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace tactus
@@ -93,6 +97,49 @@ GridTriangle turned_over(const GridTriangle& face)
     return {face[0], face[2], face[1]};
 }
 
+/// Drops added faces without three corners, pairs of opposite added faces, and faces that are
+/// removed and added again.
+template <typename Faces>
+void drop_idle(std::vector<std::uint32_t>& removed, std::vector<SurfaceFace>& added,
+               const Faces& faces)
+{
+    std::map<GridTriangle, std::vector<std::size_t>> kept;
+    std::vector<bool> is_dropped(added.size());
+    for (std::size_t i = 0; i < added.size(); ++i)
+    {
+        const GridTriangle& corners = added[i].corners;
+        is_dropped[i] =
+            corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+        if (is_dropped[i])
+        {
+            continue;
+        }
+        const auto opposite = kept.find(normal_form(turned_over(corners)));
+        if (opposite != kept.end() && !opposite->second.empty())
+        {
+            is_dropped[i] = true;
+            is_dropped[opposite->second.back()] = true;
+            opposite->second.pop_back();
+            continue;
+        }
+        kept[normal_form(corners)].push_back(i);
+    }
+    std::erase_if(removed,
+                  [&](std::uint32_t id)
+                  {
+                      const auto same = kept.find(normal_form(faces[id].corners));
+                      if (same == kept.end() || same->second.empty())
+                      {
+                          return false;
+                      }
+                      is_dropped[same->second.back()] = true;
+                      same->second.pop_back();
+                      return true;
+                  });
+    std::size_t i = 0;
+    std::erase_if(added, [&](const SurfaceFace&) { return is_dropped[i++]; });
+}
+
 } // namespace
 
 Result<SurfaceEditor, Refusal> SurfaceEditor::create(const DecodedModel& model, std::uint32_t room)
@@ -167,7 +214,7 @@ SurfaceEditor::SurfaceEditor(const DecodedModel& model, std::uint32_t room,
     }
     for (std::uint32_t slot = 0; slot < room; ++slot)
     {
-        free_slots_.insert(free_slots_.end(), slot);
+        free_slots_.push_back(slot); // Ascending numbers are a heap.
     }
 }
 
@@ -246,7 +293,53 @@ std::optional<SurfaceEditor::Plan> SurfaceEditor::plan_cut(const SweptRegion& re
              is_facet ? bucket_near(piece.corners, nearby) : faces_[near[piece.parent]].bucket,
              is_facet ? 0.0F : faces_[near[piece.parent]].moved_quanta});
     }
+    drop_idle(plan.removed, plan.added, faces_);
+    merge(plan, region.slack_quanta);
     return plan;
+}
+
+void SurfaceEditor::merge(Plan& plan, double slack_quanta) const
+{
+    std::unordered_set<GridPoint, GridPointHash> points;
+    GridBox box;
+    for (const SurfaceFace& face : plan.added)
+    {
+        for (const GridPoint& corner : face.corners)
+        {
+            points.insert(corner);
+            box.add(corner);
+        }
+    }
+    if (points.empty())
+    {
+        return;
+    }
+    // Faces around: added ones are merged, too; those of the source stay.
+    const std::unordered_set<std::uint32_t> gone(plan.removed.begin(), plan.removed.end());
+    std::vector<GridPoint> fixed;
+    for (const std::uint32_t id : faces_.in_box(box))
+    {
+        const GridTriangle& corners = faces_[id].corners;
+        if (gone.contains(id) ||
+            std::none_of(corners.begin(), corners.end(),
+                         [&](const GridPoint& corner) { return points.contains(corner); }))
+        {
+            continue;
+        }
+        for (const GridPoint& corner : corners)
+        {
+            if (id < source_ids_ || !points.contains(corner))
+            {
+                fixed.push_back(corner);
+            }
+        }
+        if (id >= source_ids_)
+        {
+            plan.removed.push_back(id);
+            plan.added.push_back(faces_[id]);
+        }
+    }
+    merge_pieces(plan.added, fixed, slack_quanta);
 }
 
 std::optional<int> SurfaceEditor::winding_of(const Vec3& point) const
@@ -398,54 +491,6 @@ Result<SurfaceChange, Refusal> SurfaceEditor::displace(const Vec3& center_m, dou
     return change;
 }
 
-namespace
-{
-
-/// Drops added faces without three corners, pairs of opposite added faces, and faces that are
-/// removed and added again.
-template <typename Faces>
-void drop_idle(std::vector<std::uint32_t>& removed, std::vector<SurfaceFace>& added,
-               const Faces& faces)
-{
-    std::map<GridTriangle, std::vector<std::size_t>> kept;
-    std::vector<bool> is_dropped(added.size());
-    for (std::size_t i = 0; i < added.size(); ++i)
-    {
-        const GridTriangle& corners = added[i].corners;
-        is_dropped[i] =
-            corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
-        if (is_dropped[i])
-        {
-            continue;
-        }
-        const auto opposite = kept.find(normal_form(turned_over(corners)));
-        if (opposite != kept.end() && !opposite->second.empty())
-        {
-            is_dropped[i] = true;
-            is_dropped[opposite->second.back()] = true;
-            opposite->second.pop_back();
-            continue;
-        }
-        kept[normal_form(corners)].push_back(i);
-    }
-    std::erase_if(removed,
-                  [&](std::uint32_t id)
-                  {
-                      const auto same = kept.find(normal_form(faces[id].corners));
-                      if (same == kept.end() || same->second.empty())
-                      {
-                          return false;
-                      }
-                      is_dropped[same->second.back()] = true;
-                      same->second.pop_back();
-                      return true;
-                  });
-    std::size_t i = 0;
-    std::erase_if(added, [&](const SurfaceFace&) { return is_dropped[i++]; });
-}
-
-} // namespace
-
 std::optional<Refusal> SurfaceEditor::fault_of(const Plan& plan) const
 {
     if (plan.removed.size() + plan.added.size() > kMaxChangedFaces)
@@ -527,18 +572,31 @@ Result<SurfaceChange, Refusal> SurfaceEditor::apply(Plan plan)
     const bool is_single =
         plan.removed.size() <= kMaxEditFaces && plan.added.size() <= kMaxEditFaces;
     // Slots that a single edit frees are free for its own faces.
-    std::set<std::uint32_t> free = free_slots_;
+    std::vector<std::uint32_t> freed;
     for (const std::uint32_t id : plan.removed)
     {
-        if (is_single && id >= source_ids_)
+        if (id >= source_ids_)
         {
-            free.insert(id - source_ids_);
+            freed.push_back(id - source_ids_);
         }
     }
-    if (plan.added.size() > free.size())
+    const std::size_t free = free_slots_.size() + (is_single ? freed.size() : 0);
+    if (plan.added.size() > free)
     {
         return Refusal{fmt::format("edit: adds {} faces, but only {} of the room for {} are free",
-                                   plan.added.size(), free.size(), room_)};
+                                   plan.added.size(), free, room_)};
+    }
+    const auto give_back = [&]
+    {
+        for (const std::uint32_t slot : freed)
+        {
+            free_slots_.push_back(slot);
+            std::push_heap(free_slots_.begin(), free_slots_.end(), std::greater<>());
+        }
+    };
+    if (is_single)
+    {
+        give_back();
     }
     SurfaceChange change;
     change.volume_m3 = volume_quanta(plan) * grid_.quantum_m * grid_.quantum_m * grid_.quantum_m;
@@ -553,8 +611,9 @@ Result<SurfaceChange, Refusal> SurfaceEditor::apply(Plan plan)
     std::vector<std::uint32_t> slots;
     for (std::size_t i = 0; i < plan.added.size(); ++i)
     {
-        slots.push_back(*free.begin());
-        free.erase(free.begin());
+        std::pop_heap(free_slots_.begin(), free_slots_.end(), std::greater<>());
+        slots.push_back(free_slots_.back());
+        free_slots_.pop_back();
         next_edit(i % kMaxEditFaces == 0).added.push_back(added_face(slots.back(), plan.added[i]));
     }
     for (std::size_t i = 0; i < plan.removed.size(); ++i)
@@ -574,15 +633,14 @@ Result<SurfaceChange, Refusal> SurfaceEditor::apply(Plan plan)
     for (const std::uint32_t id : plan.removed)
     {
         faces_.remove(id);
-        if (id >= source_ids_)
-        {
-            free_slots_.insert(id - source_ids_);
-        }
     }
     for (std::size_t i = 0; i < plan.added.size(); ++i)
     {
         faces_.add(source_ids_ + slots[i], plan.added[i]);
-        free_slots_.erase(slots[i]);
+    }
+    if (!is_single)
+    {
+        give_back();
     }
     return change;
 }

@@ -13,7 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <set>
+#include <optional>
 #include <vector>
 
 // One thread at a time, except the haptic one: calls allocate.
@@ -86,6 +86,7 @@ private:
 
     [[nodiscard]] Result<SurfaceChange, Refusal> cut(const Sweep& sweep, CutSense sense);
     [[nodiscard]] std::optional<Plan> plan_cut(const SweptRegion& region, CutSense sense) const;
+    void merge(Plan& plan, double slack_quanta) const;
     [[nodiscard]] std::optional<int> winding_of(const Vec3& point) const;
     void add_walls(const GridBox& region, std::vector<CutFace>& faces) const;
     [[nodiscard]] Vec3 normal_at(const GridPoint& point) const;
@@ -103,7 +104,7 @@ private:
     std::uint32_t room_{0};
     std::uint32_t revision_{0};
     SurfaceFaces faces_;
-    std::set<std::uint32_t> free_slots_;
+    std::vector<std::uint32_t> free_slots_; ///< A heap, the lowest slot first.
 };
 
 } // namespace tactus

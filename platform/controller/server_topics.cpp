@@ -10,10 +10,33 @@
 namespace tactus::hrtc
 {
 
+namespace
+{
+
+/// Reader of the edits of the models with a room for them; null without any.
+std::unique_ptr<dds::EditReader> edit_reader(const dds::DdsClient& client,
+                                             const Controller& controller, Log log)
+{
+    std::vector<dds::EditReader::Model> models;
+    for (std::size_t i = 0; i < controller.models().size(); ++i)
+    {
+        const ServedModel& model = controller.models()[i];
+        models.push_back({model.name, model.hash, ModelHeader::parse(model.header).value(),
+                          controller.setup().models[i].capacities.edit_faces});
+    }
+    const bool has_room =
+        std::ranges::any_of(models, [](const auto& model) { return model.room > 0; });
+    return has_room ? std::make_unique<dds::EditReader>(client.domain(), client.catalogue(),
+                                                        std::move(models), std::move(log))
+                    : nullptr;
+}
+
+} // namespace
+
 Result<std::unique_ptr<ServerTopics>, Refusal>
 ServerTopics::create(dds::DdsClient& client, const Controller& controller,
                      std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
-                     bool shows_refinement_state)
+                     bool shows_refinement_state, const Log& log)
 {
     std::unique_ptr<ServerTopics> topics(
         new ServerTopics(client, controller, authorities, std::move(keeper)));
@@ -31,6 +54,7 @@ ServerTopics::create(dds::DdsClient& client, const Controller& controller,
         return telemetry.error();
     }
     topics->telemetry_ = std::move(telemetry).value();
+    topics->edits_ = edit_reader(client, controller, log);
     if (shows_refinement_state)
     {
         auto front = RefinementStateSender::create(client, controller);
@@ -54,11 +78,13 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
 {
 }
 
-void ServerTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap,
+void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, const TelemetryTap& tap,
                            RefinementStateTap* front, MonotonicTime now,
                            SceneKeeper::NameSink names)
 {
     tap_ = &tap;
+    TACTUS_ASSERT(edits != nullptr || edits_ == nullptr);
+    edit_mailbox_ = edits;
     if (front_ != nullptr)
     {
         TACTUS_ASSERT(front != nullptr);
@@ -68,6 +94,12 @@ void ServerTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap,
     {
         keeper_->connect(mailbox, now, std::move(names));
     }
+}
+
+void ServerTopics::add_cuts(std::unique_ptr<CutSender> cuts) noexcept
+{
+    TACTUS_ASSERT(edits_ != nullptr);
+    cuts_ = std::move(cuts);
 }
 
 void ServerTopics::tell_begins_inside(std::size_t tool) noexcept
@@ -87,6 +119,14 @@ void ServerTopics::step(MonotonicTime now)
     if (keeper_ != nullptr)
     {
         keeper_->step(now);
+    }
+    if (edits_ != nullptr)
+    {
+        pass_edits();
+    }
+    if (cuts_ != nullptr)
+    {
+        cuts_->step(*edits_, [this](std::size_t model) { return server_of(model); });
     }
     if (now - last_sent_ >= kTelemetryPeriod)
     {
@@ -123,6 +163,47 @@ std::vector<dds::ServerEvent> ServerTopics::server_events() const
     }
     std::ranges::stable_sort(events, {}, &dds::ServerEvent::time);
     return events;
+}
+
+std::vector<dds::EditReader::Counts> ServerTopics::edit_counts() const
+{
+    std::vector<dds::EditReader::Counts> counts;
+    for (std::size_t i = 0; edits_ != nullptr && i < controller_.models().size(); ++i)
+    {
+        counts.push_back(edits_->counts(i));
+    }
+    return counts;
+}
+
+std::optional<CutCounts> ServerTopics::cut_counts() const
+{
+    return cuts_ != nullptr ? std::optional(cuts_->counts()) : std::nullopt;
+}
+
+/// Epoch of the server with authority over the model: that of the scene, or of the model; 0: none.
+std::uint64_t ServerTopics::server_of(std::size_t model) const
+{
+    return authorities_.empty() ? 0
+                                : authorities_[std::min(model, authorities_.size() - 1)].server();
+}
+
+/// Passes edits to the mailbox. Edits without room there are offered again in the next step.
+void ServerTopics::pass_edits()
+{
+    for (std::size_t i = 0; i < controller_.models().size(); ++i)
+    {
+        edits_->follow(i, server_of(i));
+    }
+    edits_->poll();
+    for (std::uint32_t i = 0; i < controller_.models().size(); ++i)
+    {
+        const EditContent* edit = edits_->next(i);
+        while (edit != nullptr && edit_mailbox_->try_put(ModelId{i}, *edit))
+        {
+            edits_->pop(i);
+            edit = edits_->next(i);
+        }
+    }
 }
 
 void ServerTopics::send_telemetry(MonotonicTime now)

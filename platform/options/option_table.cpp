@@ -126,6 +126,11 @@ void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
             "--cache-mib", options.cache_mib,
             "Part of --pool-mib for pages of records, in MiB [default: about half of --pool-mib]")
         .number_between(kCacheRange_mib.low, kCacheRange_mib.high);
+    line.add_option("--edit-faces", options.edit_faces,
+                    "Room for faces that edits add, for each model that its server edits; part of "
+                    "--pool-mib, about 150 bytes each. 0: the model takes no edits [default: the "
+                    "server's room]")
+        .integer_between(kEditFacesRange.low, kEditFacesRange.high);
     line.add_option("--splits", options.splits,
                     "Maximum number of splits, and of merges, in a frame. With --frame-budget-us "
                     "the default is the largest value")

@@ -170,7 +170,7 @@ std::optional<std::string> EditReader::take(Feed& feed, const tactus_v5_Edits& s
 {
     const bool is_sum = sample.index >= kKeptEdits;
     const bool is_old = !feed.needs_sum && sample.to <= feed.revision;
-    if (feed.counts.is_stopped || is_old)
+    if (is_old)
     {
         return std::nullopt;
     }
@@ -215,7 +215,7 @@ std::optional<std::string> EditReader::take(Feed& feed, const tactus_v5_Edits& s
 /// Prepares edits for the frame if none is left.
 void EditReader::advance(Feed& feed)
 {
-    if (feed.counts.is_stopped || !feed.ready.empty())
+    if (!feed.ready.empty())
     {
         return;
     }
@@ -299,14 +299,18 @@ void EditReader::take_sum(Feed& feed)
     }
     feed.revision = sum.to;
     feed.needs_sum = false;
+    feed.counts.is_stopped = false;
     ++feed.counts.sums;
 }
 
+/// Takes no edits until a sum leads on.
 void EditReader::stop(Feed& feed, const std::string& why)
 {
-    feed.counts.is_stopped = true;
-    feed.pending.clear();
-    refuse(feed, why + "; the model keeps its surface and gets no further edits");
+    feed.needs_sum = true;
+    if (!std::exchange(feed.counts.is_stopped, true))
+    {
+        refuse(feed, why + "; the model keeps its surface");
+    }
 }
 
 void EditReader::refuse(Feed& feed, const std::string& text)

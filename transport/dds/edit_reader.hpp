@@ -28,8 +28,8 @@ namespace tactus::dds
 ///
 /// The edits for the frame have the controller's own numbers, since a sum of a server's edits
 /// becomes several steps. An edit that does not follow waits for the ones before it or for a sum.
-/// If another server is followed, its sum decides: a server without the edits that the model has
-/// can't be followed, and the model then gets no further edits.
+/// If another server is followed, its sum decides. While a server lacks edits that the model has,
+/// or needs more room, the model keeps its surface and gets no edits.
 class EditReader
 {
 public:
@@ -46,7 +46,7 @@ public:
         std::uint64_t sums{0};    ///< Sums that were used.
         std::uint64_t gaps{0};    ///< Times that an edit arrived before one that it follows.
         std::uint64_t refused{0}; ///< Refused samples and sums.
-        bool is_stopped{false};   ///< True if the model gets no further edits.
+        bool is_stopped{false};   ///< True while the model gets no edits.
     };
 
     /// `domain` and `catalogue` must outlive the reader. `log` gets, at a limited rate, a line for
