@@ -16,7 +16,7 @@ namespace tactus
 {
 
 /// Surface of a model after edits: the source faces that were removed, and the added faces that are
-/// there. It is the sum of all edits so far, whatever their number.
+/// there. It is the sum of all edits so far.
 ///
 /// Each removed source face belongs to a box that holds it. With more than kMaxRemovedBoxes boxes,
 /// the two whose union is smallest become one.
