@@ -72,7 +72,7 @@ private:
                                 const dds::EditReader& reader, std::uint64_t server_epoch);
 
     std::vector<Vec3> origins_m_;         ///< ModelHeader::origin_m() of each model.
-    std::map<std::uint32_t, Burr> burrs_; ///< By the number of the tool.
+    std::map<std::uint32_t, Burr> burrs_; ///< Burrs by the numbers of their tools.
     CutTap tap_;
     dds::EditWriter writer_;
     CutCounts counts_;
