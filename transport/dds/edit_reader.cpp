@@ -35,8 +35,7 @@ EditReader::EditReader(const Domain& domain, const Catalogue& catalogue, std::ve
 {
     for (Model& model : models)
     {
-        EditState state(model.header.counts(), model.room);
-        feeds_.push_back({std::move(model), std::move(state)});
+        feeds_.emplace_back(std::move(model));
     }
 }
 

@@ -79,6 +79,8 @@ private:
     };
     struct Feed
     {
+        explicit Feed(Model of) : model(std::move(of)), state(model.header.counts(), model.room) {}
+
         Model model;
         EditState state;
         std::uint64_t server_epoch{0};
