@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# demo_shortened.sh SETUP BUILD_DIR [--scene | --view | --carve]: the README's demo with the programs of this
-# build, for a second: it ends well, prints the summary, names the report, and leaves no process.
+# demo_shortened.sh SETUP BUILD_DIR [--scene | --view | --carve]: the README's demo with the
+# programs of this build, for a second: it ends well, prints the summary, names the report, and
+# leaves no process.
 set -euo pipefail
 readonly setup=$1
 export TACTUS_BUILD_DIR=$2
