@@ -20,7 +20,7 @@ enum class EditKind : std::uint8_t
 {
     carve,    ///< Removes the material that the tool sweeps.
     fill,     ///< Adds material in the tool's sweep.
-    displace, ///< Moves the surface in the tool's sweep along its normal.
+    displace, ///< Moves the surface in the radius round `from` along the z axis of the tool.
 };
 inline constexpr std::size_t kEditKinds = 3;
 
@@ -40,7 +40,7 @@ struct EditRequest
     /// Places of the tool's frame in the source mesh's frame.
     Pose from;
     Pose to;
-    double amount_m{0.0}; ///< Displacement, outward if positive; 0 for the other kinds.
+    double amount_m{0.0}; ///< Displacement at the middle; 0 for the other kinds.
 
     bool operator==(const EditRequest&) const = default;
 };

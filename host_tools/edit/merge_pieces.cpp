@@ -24,8 +24,10 @@ namespace
 
 /// Rounds over all vertices; a later round finds what earlier removals made possible.
 constexpr int kMergeRounds = 6;
-/// Height below which a triangle's normal is rounding alone.
+/// Height below which a triangle's normal is rounding alone, and share of the slack below which it
+/// is of no use.
 constexpr double kSliverHeight_quanta = 2.0;
+constexpr double kSliverShare = 0.5;
 /// Largest number of faces round a vertex that is examined.
 constexpr std::size_t kMaxMergedFan = 24;
 /// Least cosine between the normals of a face before and after.
@@ -49,7 +51,7 @@ class PieceMerger
 {
 public:
     PieceMerger(std::vector<SurfaceFace>& faces, std::span<const GridPoint> fixed, double slack)
-        : faces_(faces), slack_(slack), is_alive_(faces.size(), true)
+        : faces_(faces), slack_(slack), sliver_(std::max(kSliverHeight_quanta, kSliverShare * slack)), is_alive_(faces.size(), true)
     {
         std::unordered_map<GridPoint, std::uint32_t, MergePointHash> found;
         for (std::uint32_t face = 0; face < faces.size(); ++face)
@@ -235,7 +237,7 @@ private:
             const Vec3& a = points_[ring_[i]];
             const Vec3& b = points_[ring_[(i + 1) % size]];
             const Vec3 before = (a - apex).cross(b - apex);
-            const bool was_sliver = height_of(apex, a, b) < kSliverHeight_quanta;
+            const bool was_sliver = height_of(apex, a, b) < sliver_;
             is_graph &= was_sliver || before.dot(up) > 0.0;
             if (i == target || (i + 1) % size == target)
             {
@@ -251,7 +253,7 @@ private:
                 return std::nullopt;
             }
         }
-        if (removal.shape < std::min(kSliverHeight_quanta, old_height))
+        if (removal.shape < std::min(sliver_, old_height))
         {
             return std::nullopt;
         }
@@ -351,6 +353,7 @@ private:
 
     std::vector<SurfaceFace>& faces_;
     double slack_;
+    double sliver_; ///< Height of a triangle whose normal does not count.
     std::vector<Vec3> points_;
     std::vector<std::array<std::uint32_t, 3>> corners_; ///< By face, as indices of points_.
     std::vector<std::vector<std::uint32_t>> stars_;     ///< Faces by point.

@@ -237,6 +237,18 @@ Result<SurfaceChange, Refusal> SurfaceEditor::cut(const Sweep& sweep, CutSense s
         {
             return region.error();
         }
+        std::vector<Triangle> touched;
+        for (const std::uint32_t id :
+             faces_.in_box(inflated(box_round(region.value().polyhedron),
+                                    region.value().slack_quanta + kSweptTouch_quanta)))
+        {
+            touched.push_back(to_triangle(faces_[id].corners));
+        }
+        withdraw_from(touched, sense == CutSense::carve, region.value());
+        if (region.value().polyhedron.facets.empty())
+        {
+            return SurfaceChange{};
+        }
         if (auto plan = plan_cut(region.value(), sense))
         {
             auto change = apply(*std::move(plan));

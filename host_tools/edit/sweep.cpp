@@ -17,8 +17,8 @@ namespace tactus
 namespace
 {
 
-/// Least thickness of a tool: a thinner one removes nothing that the grid can show.
-constexpr double kLeastThickness_quanta = 2.0;
+/// Least thickness of a tool: a thinner one could be withdrawn to nothing.
+constexpr double kLeastThickness_quanta = 16.0;
 /// Largest coordinate of a region; beyond it, shifts would be lost in a double's rounding.
 constexpr double kFarthest_quanta = 0x1p30;
 /// Points that lie at most this far outside the hull of the others are left out.
@@ -161,8 +161,8 @@ Result<SweptRegion, Refusal> swept_region(const Sweep& sweep, const SurfaceGrid&
                                    kFarthest_quanta * grid.quantum_m)};
     }
     SweptRegion region{convex_hull(points, kHullMargin_quanta),
-                       std::max(1.0, kSweptRoundness * radius_quanta)};
-    const bool is_thin = is_round ? radius_quanta < kLeastThickness_quanta
+                       std::max(1.0, kSweptRoundness / 2.0 * radius_quanta)};
+    const bool is_thin = is_round ? 2.0 * radius_quanta < kLeastThickness_quanta
                                   : convex_hull(points, kLeastThickness_quanta).facets.empty();
     if (is_thin)
     {
@@ -170,6 +170,49 @@ Result<SweptRegion, Refusal> swept_region(const Sweep& sweep, const SurfaceGrid&
                                    kLeastThickness_quanta * grid.quantum_m)};
     }
     return region;
+}
+
+void withdraw_from(std::span<const Triangle> faces, bool is_inward, SweptRegion& region)
+{
+    std::vector<Vec3>& vertices = region.polyhedron.vertices;
+    std::vector<Vec3> normals(vertices.size(), Vec3(0.0, 0.0, 0.0));
+    for (const auto& facet : region.polyhedron.facets)
+    {
+        const Vec3& a = vertices[facet[0]];
+        const Vec3 normal = (vertices[facet[1]] - a).cross(vertices[facet[2]] - a);
+        for (const std::uint32_t vertex : facet)
+        {
+            normals[vertex] += normal;
+        }
+    }
+    const double touch = region.slack_quanta + kSweptTouch_quanta;
+    const double move = kSweptMoveShare * region.slack_quanta + kSweptMove_quanta;
+    const auto touches = [&](const Vec3& point, const Triangle& face)
+    {
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+        {
+            const auto [low, high] = std::minmax({face[0][axis], face[1][axis], face[2][axis]});
+            if (point[axis] < low - touch || point[axis] > high + touch)
+            {
+                return false;
+            }
+        }
+        return closest_point_on_triangle(point, face).distance_sq < touch * touch;
+    };
+    bool is_moved = false;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+    {
+        if (std::any_of(faces.begin(), faces.end(),
+                        [&](const Triangle& face) { return touches(vertices[i], face); }))
+        {
+            vertices[i] += (is_inward ? -move : move) * normals[i].normalized();
+            is_moved = true;
+        }
+    }
+    if (is_moved)
+    {
+        region.polyhedron = convex_hull(std::vector<Vec3>(vertices), kHullMargin_quanta);
+    }
 }
 
 } // namespace tactus

@@ -4,11 +4,13 @@
 
 #include "host_tools/edit/convex_hull.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/math/triangle.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 // Any thread, except the haptic one: calls allocate, and work on their arguments alone.
@@ -47,12 +49,12 @@ struct SurfaceGrid
 
 /// Region of a sweep in quanta of the model's grid. A round tool's polyhedron contains the tool of
 /// radius (1 - kSweptRoundness) x radius_m, and lies in that of (1 + kSweptRoundness) x radius_m;
-/// a hull is itself. Both within kSweptShift_quanta.
+/// a hull is itself. Both within kSweptShift_quanta, and except where it was withdrawn.
 struct SweptRegion
 {
     Polyhedron polyhedron;
-    /// Distance by which pieces of the tool's surface may be merged: kSweptRoundness x radius, at
-    /// least one quantum.
+    /// Distance by which merging may move the surface: half of kSweptRoundness x radius, at least
+    /// one quantum.
     double slack_quanta{1.0};
 };
 
@@ -60,10 +62,20 @@ struct SweptRegion
 /// no vertex of the region lies in the plane of a face, and none of the surface in that of a facet.
 inline constexpr double kSweptShift_quanta = 1.0 / 256.0;
 
+/// A vertex of a region that is nearer than slack_quanta + kSweptTouch_quanta to a face is moved by
+/// kSweptMoveShare x slack_quanta + kSweptMove_quanta: past any face that merging has moved.
+inline constexpr double kSweptTouch_quanta = 1.5;
+inline constexpr double kSweptMoveShare = 1.25;
+inline constexpr double kSweptMove_quanta = 3.0;
+
 /// Region of a sweep; `seed` chooses the shifts. Refused with one line: a core or radius that is
 /// not as above, a value that is not finite, a place too far from the model, a rotation that is
 /// none, and a tool thinner than two quanta.
 [[nodiscard]] Result<SweptRegion, Refusal> swept_region(const Sweep& sweep, const SurfaceGrid& grid,
                                                         std::uint64_t seed);
+
+/// Moves the vertices near a face as above, against the region's normal (carve) or along it (fill).
+/// The region's surface then does not run along a face that an earlier sweep left there.
+void withdraw_from(std::span<const Triangle> faces, bool is_inward, SweptRegion& region);
 
 } // namespace tactus

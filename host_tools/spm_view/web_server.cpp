@@ -175,7 +175,13 @@ void WebServer::Inside::declare_answers()
                    send_built(
                        request, response, "faces",
                        [](KnownModel& model, const RefinementStateModel& front, bool is_whole)
-                       { return with_cut(model, front, is_whole, &cut_bytes); });
+                       {
+                           const auto edits = model.edits();
+                           return with_cut(model, front, is_whole,
+                                           [&edits](const DecodedModel& decoded,
+                                                    std::span<const RefinementStatePage> pages)
+                                           { return cut_bytes(decoded, pages, edits.get()); });
+                       });
                });
     server.Get("/loaded",
                [this](const Request& request, Response& response)
@@ -326,8 +332,8 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
     {
         chunks = (chunks ^ chunk.value) * 0x0000'0100'0000'01B3U;
     }
-    const std::string name =
-        fmt::format("{} {} {:016x} {:016x}", what, hash_text(*hash), cut_id(front.pages), chunks);
+    const std::string name = fmt::format("{} {} {:016x} {:016x} {}", what, hash_text(*hash),
+                                         cut_id(front.pages), chunks, model->edit_revision());
     const auto bytes =
         built(name, [&] { return build(*model, front, seen->front.slots_left_out == 0); });
     if (!bytes)

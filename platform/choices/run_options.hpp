@@ -48,6 +48,8 @@ struct ToolOptions
     std::optional<FixtureChoice> fixture;
     DeviceChoice device;
     OperatorChoice simulated; ///< Operator of a simulated device.
+    /// Greatest volume in a second that the tool carves (BurrLaw); 0: it edits no models.
+    double carve_rate_m3_per_s{0.0};
     /// External force of a program, borrowed; null without one, and with a fixture.
     ExternalForceSource* external_force{nullptr};
 

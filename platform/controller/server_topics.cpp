@@ -96,6 +96,12 @@ void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, const Tele
     }
 }
 
+void ServerTopics::add_cuts(std::unique_ptr<CutSender> cuts) noexcept
+{
+    TACTUS_ASSERT(edits_ != nullptr);
+    cuts_ = std::move(cuts);
+}
+
 void ServerTopics::tell_begins_inside(std::size_t tool) noexcept
 {
     if (front_ != nullptr)
@@ -117,6 +123,10 @@ void ServerTopics::step(MonotonicTime now)
     if (edits_ != nullptr)
     {
         pass_edits();
+    }
+    if (cuts_ != nullptr)
+    {
+        cuts_->step(*edits_, [this](std::size_t model) { return server_of(model); });
     }
     if (now - last_sent_ >= kTelemetryPeriod)
     {
@@ -165,13 +175,24 @@ std::vector<dds::EditReader::Counts> ServerTopics::edit_counts() const
     return counts;
 }
 
+std::optional<CutCounts> ServerTopics::cut_counts() const
+{
+    return cuts_ != nullptr ? std::optional(cuts_->counts()) : std::nullopt;
+}
+
+/// Epoch of the server with authority over the model: that of the scene, or of the model; 0: none.
+std::uint64_t ServerTopics::server_of(std::size_t model) const
+{
+    return authorities_.empty() ? 0
+                                : authorities_[std::min(model, authorities_.size() - 1)].server();
+}
+
 /// Passes edits to the mailbox. Edits without room there are offered again in the next step.
 void ServerTopics::pass_edits()
 {
-    for (std::size_t i = 0; i < controller_.models().size() && !authorities_.empty(); ++i)
+    for (std::size_t i = 0; i < controller_.models().size(); ++i)
     {
-        // The authority of the scene, or that of the model.
-        edits_->follow(i, authorities_[std::min(i, authorities_.size() - 1)].server());
+        edits_->follow(i, server_of(i));
     }
     edits_->poll();
     for (std::uint32_t i = 0; i < controller_.models().size(); ++i)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/controller/controller.hpp"
+#include "platform/controller/cut_sender.hpp"
 #include "platform/controller/refinement_state_sender.hpp"
 #include "platform/loop/edit_mailbox.hpp"
 #include "platform/loop/scene_mailbox.hpp"
@@ -17,6 +18,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,6 +50,11 @@ public:
                  RefinementStateTap* front, MonotonicTime now, SceneKeeper::NameSink names = {});
     /// Reports to viewers that the tool began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept;
+    /// Sends the edit requests of the tools that carve; has_edits() must be true (asserted). Call
+    /// it before the run.
+    void add_cuts(std::unique_ptr<CutSender> cuts) noexcept;
+    /// Tap of the tools that carve; null without any.
+    [[nodiscard]] CutTap* cut_tap() noexcept { return cuts_ != nullptr ? &cuts_->tap() : nullptr; }
     /// True if a model has room for faces that edits add.
     [[nodiscard]] bool has_edits() const noexcept { return edits_ != nullptr; }
     [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
@@ -62,6 +69,8 @@ public:
     [[nodiscard]] SceneNewsCounts scene_news() const;
     /// Counts of edits, one entry a model; empty if no model can be edited. Not during a step.
     [[nodiscard]] std::vector<dds::EditReader::Counts> edit_counts() const;
+    /// Counts of the edit requests of the tools that carve; none without any. Not during a step.
+    [[nodiscard]] std::optional<CutCounts> cut_counts() const;
     /// Refused messages of other participants of the domain.
     [[nodiscard]] std::vector<dds::PeerRefusals> refused() const
     {
@@ -87,6 +96,7 @@ private:
     ServerTopics(const dds::DdsClient& client, const Controller& controller,
                  std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper);
 
+    [[nodiscard]] std::uint64_t server_of(std::size_t model) const;
     void pass_edits();
     void send_telemetry(MonotonicTime now);
     void add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now);
@@ -97,6 +107,7 @@ private:
     std::span<dds::Authority> authorities_;
     std::unique_ptr<SceneKeeper> keeper_;    ///< Null if poses aren't followed.
     std::unique_ptr<dds::EditReader> edits_; ///< Null if no model can be edited.
+    std::unique_ptr<CutSender> cuts_;        ///< Null if no tool carves.
     EditMailbox* edit_mailbox_{nullptr};
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
     std::unique_ptr<RefinementStateSender> front_; ///< Null if no viewer gets it.

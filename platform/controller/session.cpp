@@ -365,6 +365,19 @@ std::optional<Refusal> Session::assemble()
             return failure(topics.error().text);
         }
         topics_ = std::move(topics).value();
+        auto cuts = CutSender::create(client_->domain(), *controller_, options_);
+        if (!cuts)
+        {
+            return failure(cuts.error().text);
+        }
+        if (cuts.value() != nullptr && !topics_->has_edits())
+        {
+            return failure("--edit: no model can be edited; start its server with --edits");
+        }
+        if (cuts.value() != nullptr)
+        {
+            topics_->add_cuts(std::move(cuts).value());
+        }
     }
     return std::nullopt;
 }

@@ -202,7 +202,8 @@ LoopParts SessionRun::loop_parts()
             .telemetry = has_topics ? &telemetry_ : nullptr,
             .front = front_ ? &*front_ : nullptr,
             .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr,
-            .hands = parts_.hands};
+            .hands = parts_.hands,
+            .cuts = has_topics ? parts_.topics->cut_tap() : nullptr};
 }
 
 std::optional<Refusal> SessionRun::start()
@@ -604,6 +605,7 @@ void SessionRun::note_topics()
         done_.pose_uses.assign(mailbox_.uses().begin(), mailbox_.uses().end());
         done_.pose_counts = parts_.topics->pose_counts();
         done_.scene_news = parts_.topics->scene_news();
+        done_.cuts = parts_.topics->cut_counts();
         done_.refused = parts_.topics->refused();
         done_.server_events = parts_.topics->server_events();
         done_.telemetry_sent = parts_.topics->telemetry_sent();

@@ -344,6 +344,10 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
         parts_.front->show({frame_, start, *parts_.frame, output, forces_, measures_.budgets},
                            statistics_);
     }
+    if (parts_.cuts != nullptr)
+    {
+        parts_.cuts->show({start.ns, output, forces_, radii_m_, parts_.frame->objects()});
+    }
     if (parts_.hands != nullptr)
     {
         const DeadlineAccount& deadlines = statistics_.deadlines;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/loop/budget_governor.hpp"
+#include "platform/loop/cut_tap.hpp"
 #include "platform/loop/edit_mailbox.hpp"
 #include "platform/loop/hand_tap.hpp"
 #include "platform/loop/model_marks.hpp"
@@ -55,6 +56,7 @@ struct LoopParts
     RefinementStateTap* front{nullptr};      ///< Shows the refinement state; may be null.
     TraceTap* trace{nullptr};                ///< Traces every frame's times; may be null.
     HandTap* hands{nullptr};                 ///< Shows the program its hands; may be null.
+    CutTap* cuts{nullptr};                   ///< Takes the contacts of tools that cut; may be null.
 };
 
 /// Work of the haptic thread. Every period it reads the devices, runs the frame, makes its forces

@@ -62,9 +62,10 @@ void declare_tools(CommandLine& line, RawOptions& raw)
                     "hrtc ball.spm --tool sphere:0.002 --device udp:48500");
     line.add_option("--tools", raw.tool_count,
                     "Number of tools. The n-th --tool, --tool-mass, --fixture, --device, "
-                    "--device-limits, --device-frame and --motion are for the n-th tool; the value "
-                    "none selects the default. In an option file, the n-th table [[tool]] has the "
-                    "keys shape, mass, fixture, device, device-limits, device-frame and motion "
+                    "--device-limits, --device-frame, --motion and --edit are for the n-th tool; "
+                    "the value none selects the default. In an option file, the n-th table "
+                    "[[tool]] has the keys shape, mass, fixture, edit, device, device-limits, "
+                    "device-frame and motion "
                     "[default: the number of tools with any of these, at least 1]")
         .integer_between(1U, kMaxTools);
     for (std::size_t i = 0; i < kToolOptions; ++i)
