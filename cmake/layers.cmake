@@ -183,7 +183,7 @@ tactus_module(host_tools/tactus ${host_layer} platform/program)
 tactus_module(host_tools/keys ${host_layer} platform/program)
 # The program that shows a run in a browser; it plays recordings, too.
 tactus_module(host_tools/spm_view ${host_layer} platform/program host_tools/mesh host_tools/encode
-    host_tools/web platform/recording)
+    host_tools/web platform/recording platform/devices platform/machine)
 
 # Tests may include everything.
 tactus_module(tests *)

@@ -3,6 +3,8 @@
 #include "platform/controller/server_topics.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/telemetry_from_frame.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -76,9 +78,13 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
     , keeper_(std::move(keeper))
     , seen_(controller.models().size())
 {
+    for (const ServedModel& model : controller.models())
+    {
+        origins_m_.push_back(ModelHeader::parse(model.header).value().origin_m());
+    }
 }
 
-void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, const TelemetryTap& tap,
+void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
                            RefinementStateTap* front, MonotonicTime now,
                            SceneKeeper::NameSink names)
 {
@@ -92,7 +98,17 @@ void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, const Tele
     }
     if (keeper_ != nullptr)
     {
-        keeper_->connect(mailbox, now, std::move(names));
+        keeper_->connect(mailbox, now,
+                         [this, names = std::move(names)](std::uint32_t number,
+                                                          std::uint32_t generation,
+                                                          const std::string& name)
+                         {
+                             name_object(number, name);
+                             if (names)
+                             {
+                                 names(number, generation, name);
+                             }
+                         });
     }
 }
 
@@ -131,7 +147,13 @@ void ServerTopics::step(MonotonicTime now)
     if (now - last_sent_ >= kTelemetryPeriod)
     {
         last_sent_ = now;
+        is_renewed_ = false;
         send_telemetry(now);
+    }
+    else if (!is_renewed_ && now - last_sent_ >= kTelemetryPeriod - kRenewal)
+    {
+        is_renewed_ = true;
+        renew_objects(false);
     }
     if (front_ != nullptr)
     {
@@ -219,9 +241,9 @@ void ServerTopics::send_telemetry(MonotonicTime now)
     }
     for (std::size_t i = 0; i < telemetry.pair_count; ++i)
     {
-        name_object(telemetry.pairs[i]);
+        name_server(telemetry.pairs[i].server_epoch, telemetry.pairs[i].object);
     }
-    telemetry_->write(telemetry);
+    telemetry_->write(telemetry, take_objects());
 }
 
 void ServerTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry,
@@ -244,15 +266,65 @@ void ServerTopics::add_transport_side(std::size_t model, ModelTelemetry& telemet
     }
 }
 
+/// Asks the haptic thread for new poses of the objects if there is a reader.
+void ServerTopics::renew_objects(bool was_sent)
+{
+    const bool is_out = tap_->objects().take() != nullptr;
+    if (is_out && telemetry_->is_watched())
+    {
+        tap_->objects().give_back(was_sent);
+        has_new_objects_ = true;
+    }
+}
+
+/// Newest poses of the objects; none without a reader.
+ObjectsTelemetry ServerTopics::take_objects()
+{
+    ObjectsTelemetry shown;
+    const ObjectsCopy* copy = tap_->objects().take();
+    has_new_objects_ = has_new_objects_ && telemetry_->is_watched();
+    const bool is_new = copy != nullptr && has_new_objects_;
+    if (is_new)
+    {
+        shown.sweep_begin = copy->sweep_begin;
+        shown.sweep_end = copy->sweep_end;
+        const std::lock_guard lock(names_mutex_);
+        for (const ObjectsCopy::Object& object : copy->objects)
+        {
+            const ServedModel& model = controller_.models()[object.model];
+            const auto name = names_.find(object.number);
+            Similarity place = object.pose;
+            place.translation_m = place.local_to_world(-origins_m_[object.model]);
+            ObjectTelemetry& told = shown.objects.emplace_back(
+                ObjectTelemetry{0, object.number, object.number,
+                                printable(name != names_.end() ? name->second : model.name),
+                                model.hash, pose_of(place)});
+            name_server(told.server_epoch, told.object);
+        }
+    }
+    renew_objects(is_new);
+    return shown;
+}
+
+void ServerTopics::name_object(std::uint32_t number, const std::string& name)
+{
+    const std::lock_guard lock(names_mutex_);
+    if (name.empty())
+    {
+        names_.erase(number); // The number may be that of a removed object.
+        return;
+    }
+    names_[number] = name;
+}
+
 /// Replaces the controller's object number by the server's epoch and number, if a server shows the
 /// object.
-void ServerTopics::name_object(PairTelemetry& pair) const
+void ServerTopics::name_server(std::uint64_t& server_epoch, std::uint32_t& object) const
 {
-    const auto shown = keeper_ != nullptr ? keeper_->shown_as(pair.object) : std::nullopt;
-    if (shown)
+    if (const auto shown = keeper_ != nullptr ? keeper_->shown_as(object) : std::nullopt)
     {
-        pair.server_epoch = shown->server_epoch;
-        pair.object = shown->number;
+        server_epoch = shown->server_epoch;
+        object = shown->number;
     }
 }
 

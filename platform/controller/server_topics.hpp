@@ -17,9 +17,12 @@
 #include "transport/dds/telemetry.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tactus::hrtc
@@ -33,6 +36,8 @@ class ServerTopics
 public:
     /// Period in which the controller's state is sent.
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
+    /// Time before a sample at which the haptic thread is asked for new poses of objects.
+    static constexpr Duration kRenewal = milliseconds(2);
 
     /// `client`, `controller` and `authorities` must outlive the topics. Without `keeper`, the
     /// poses and scenes of servers are ignored. The refinement state is sent if
@@ -46,10 +51,13 @@ public:
     /// Connects the topics to the mailbox and taps of the haptic thread, which must live as long as
     /// the run. `front` may be null if shows_refinement_state() is false. `names` receives the
     /// names of objects added later, and may be empty. `edits` may be null if has_edits() is false.
-    void connect(SceneMailbox& mailbox, EditMailbox* edits, const TelemetryTap& tap,
+    void connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
                  RefinementStateTap* front, MonotonicTime now, SceneKeeper::NameSink names = {});
     /// Reports to viewers that the tool began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept;
+    /// Names an object for viewers; others have the names of their models. Any thread but the
+    /// haptic one.
+    void name_object(std::uint32_t number, const std::string& name);
     /// Sends the edit requests of the tools that carve; has_edits() must be true (asserted). Call
     /// it before the run.
     void add_cuts(std::unique_ptr<CutSender> cuts) noexcept;
@@ -100,7 +108,9 @@ private:
     void pass_edits();
     void send_telemetry(MonotonicTime now);
     void add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now);
-    void name_object(PairTelemetry& pair) const;
+    void name_server(std::uint64_t& server_epoch, std::uint32_t& object) const;
+    void renew_objects(bool was_sent);
+    [[nodiscard]] ObjectsTelemetry take_objects();
 
     const dds::DdsClient& client_;
     const Controller& controller_;
@@ -111,7 +121,13 @@ private:
     EditMailbox* edit_mailbox_{nullptr};
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
     std::unique_ptr<RefinementStateSender> front_; ///< Null if no viewer gets it.
-    const TelemetryTap* tap_{nullptr};
+    TelemetryTap* tap_{nullptr};
+    /// True if the copy of the objects' poses was made while there was a reader.
+    bool has_new_objects_{false};
+    bool is_renewed_{false};      ///< True if the copy was renewed since the last sample.
+    std::vector<Vec3> origins_m_; ///< Origin of each model's frame in its source mesh.
+    std::mutex names_mutex_;      ///< Guards names_.
+    std::map<std::uint32_t, std::string> names_; ///< Names of objects, by their numbers.
     MonotonicTime last_sent_{};
     std::vector<Seen> seen_;
 };

@@ -378,8 +378,20 @@ std::optional<Refusal> Session::assemble()
         {
             topics_->add_cuts(std::move(cuts).value());
         }
+        for (std::uint32_t i = 0; i < options_.objects.size(); ++i)
+        {
+            topics_->name_object(i, options_.objects[i].name);
+        }
     }
     return std::nullopt;
+}
+
+void Session::name_object(std::uint32_t number, const std::string& name)
+{
+    if (topics_ != nullptr)
+    {
+        topics_->name_object(number, name);
+    }
 }
 
 std::optional<Refusal> Session::start(ProgramScene* program, HandTap* hands)

@@ -337,7 +337,8 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
 {
     if (parts_.telemetry != nullptr)
     {
-        parts_.telemetry->show({start, states_, devices_, radii_m_, output}, statistics_);
+        parts_.telemetry->show(
+            {start, states_, devices_, radii_m_, output, parts_.frame->objects()}, statistics_);
     }
     if (parts_.front != nullptr)
     {

@@ -257,6 +257,10 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
     }
     const std::string of_model = phase == Phase::open ? name_of_file(plan_.options().models[model])
                                                       : session_->controller().models()[model].name;
+    if (phase != Phase::open)
+    {
+        session_->name_object(key.number, options.name);
+    }
     const std::lock_guard lock(names_mutex_);
     names_[key.number] = options.name.empty() ? of_model : options.name;
     return handle_of(key.number, key.generation);

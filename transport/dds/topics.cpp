@@ -34,6 +34,7 @@ static_assert(tactus_v5_max_name_bytes == kMaxNameBytes);
 static_assert(tactus_v5_max_tools == kMaxTools);
 static_assert(tactus_v5_max_models == kMaxShownModels);
 static_assert(tactus_v5_max_pairs == kMaxPairs);
+static_assert(tactus_v5_max_shown_objects == kMaxShownObjects);
 static_assert(tactus_v5_max_requests == kMaxRequests);
 static_assert(tactus_v5_max_moved == kMaxMoved);
 static_assert(tactus_v5_max_payload_bytes >= kPayloadBytes);
