@@ -573,10 +573,14 @@ void Pair::forget_refinement() noexcept
     }
 }
 
-void Pair::follow(const SurfaceEdit& edit) noexcept
+void Pair::doubt() noexcept
 {
     region_of_interest_.doubt();
     forget_refinement();
+}
+
+void Pair::follow(const SurfaceEdit& edit) noexcept
+{
     const Tool& tool = *parts_.tool;
     if (!is_joined_ || !tool.is_held())
     {

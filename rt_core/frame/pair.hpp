@@ -181,8 +181,9 @@ public:
     /// True if the object's model may be removed in spite of the pair: no contact is expected soon,
     /// and the model's box is out of the tool's reach.
     [[nodiscard]] bool can_spare_model() const noexcept TACTUS_NONBLOCKING;
-    /// Forgets what was known of the object's surface, which an edit has changed. A tool that an
-    /// added face enters ignores the object until both are apart.
+    /// Ends the validity of what was known of the object's surface, which an edit has changed.
+    void doubt() noexcept TACTUS_NONBLOCKING;
+    /// Makes a tool that an added face enters ignore the object until both are apart.
     void follow(const SurfaceEdit& edit) noexcept TACTUS_NONBLOCKING;
     /// Makes the pair answer from the model's box, since the model leaves. Closures must have been
     /// released.
@@ -292,7 +293,7 @@ private:
     Priority priority_;
     bool is_shed_{false};
     bool is_joined_{true};
-    bool is_in_doubt_{false}; ///< True if an added face may meet the mesh tool.
+    bool is_in_doubt_{false};  ///< True if an added face may meet the mesh tool.
     bool is_model_here_{true}; ///< True if the object's model is resident in this frame.
     ObjectPose stood_;         ///< Pose of the object in the last frame.
     ProxyMemory body_;

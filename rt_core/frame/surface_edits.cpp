@@ -21,6 +21,14 @@ std::optional<EditRefusal> try_edit(const SurfaceEdit& edit, FrameParts& parts,
     if (!refusal)
     {
         parts.models.keep_busy(edit.model);
+        for (Pair* pair : parts.pairs.all())
+        {
+            if (pair->model() == edit.model)
+            {
+                pair->doubt();
+                parts.tools[pair->tool()].see_edit();
+            }
+        }
     }
     return refusal;
 }

@@ -17,10 +17,11 @@ class SurfaceEdits
 {
 public:
     /// Applies the edits in order, at most kMaxEditsPerFrame, and counts refused ones by their
-    /// reasons. The spans stay valid until tell_pairs().
+    /// reasons. Pairs of the edited models forget the former surface. The spans stay valid until
+    /// tell_pairs().
     void make(std::span<const SurfaceEdit> edits, FrameParts& parts,
               FrameAccount& account) noexcept TACTUS_NONBLOCKING;
-    /// Makes the pairs of the edited models forget the former surface, once they are placed.
+    /// Lets the tools go that added faces entered, once the pairs are placed.
     void tell_pairs(FrameParts& parts) noexcept TACTUS_NONBLOCKING;
 
 private:

@@ -278,6 +278,8 @@ ToolOutput Tool::finish(ToolOutput output, double clear_m) noexcept
     watch_.look_for_return(output, spec_, goal_);
     output.sample_fault = watch_.fault();
     output.clear_m = std::max(clear_m, 0.0);
+    lost_object_ = lost_object_ || (has_edit_ && output_.in_contact && !output.in_contact);
+    has_edit_ = false;
     output.lost_object = lost_object_;
     if (has_motion_ && !lost_object_) // A jump does not count as motion.
     {

@@ -46,6 +46,9 @@ public:
 
     /// Forgets a removed object that was near; before begin().
     void forget(const PlacedSurface& gone) noexcept TACTUS_NONBLOCKING;
+    /// Notes an edit of a near surface; before begin(). If the tool touches nothing afterwards, it
+    /// has lost its object.
+    void see_edit() noexcept { has_edit_ = true; }
     /// Checks the motion of an object that was not near; before begin(). `object` is its bounding
     /// sphere in its model's frame. If the object may have passed over the tool, the next output is
     /// over-constrained.
@@ -156,6 +159,7 @@ private:
     bool has_motion_{false};
     bool is_still_{false};
     std::uint32_t equal_outputs_{0};
+    bool has_edit_{false};    ///< True if a near surface was edited in this frame.
     bool lost_object_{false}; ///< True if an object in reach was removed or jumped in this frame.
     /// True if a distant object may have passed over the tool in this frame.
     bool leapt_by_{false};

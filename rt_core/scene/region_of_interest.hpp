@@ -78,8 +78,8 @@ private:
     bool is_asleep_{false};
     bool has_known_{false};
     bool is_doubted_{false}; ///< True if the surface has changed since the last answer.
-    PlacedCore known_core_; ///< Core for which `known_` was answered.
-    double motion_m_{0.0};  ///< Motion of the core since then.
+    PlacedCore known_core_;  ///< Core for which `known_` was answered.
+    double motion_m_{0.0};   ///< Motion of the core since then.
     DistanceAnswer known_;
 };
 
