@@ -267,7 +267,7 @@ run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE [WITH_VIEW [WITH_CARVE]]]]
     fi
     if [[ -n "${5:-}" ]]; then
         # The view takes the model from its server, whose edits it then shows.
-        served+=(--edits)
+        served+=(--edits --edit-room 16384)
         touched+=(--tool sphere:0.002 --motion slide --edit carve:100 --pool-mib 8)
         models=()
     fi

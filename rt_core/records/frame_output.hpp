@@ -44,7 +44,7 @@ struct ToolOutput
     bool cut_short{false}; ///< The proxy would move on: the frame's checks were used up.
     /// More contacts than limits allow: force and torque may lack some.
     bool capacity_exceeded{false};
-    /// An object near the touching tool was removed or jumped, or an edit removed its surface there.
+    /// An object near the touching tool was removed or jumped, or an edit removed its surface.
     bool lost_object{false};
     /// The tool was removed (SceneChangeKind::tool_goes); all other values are defaults.
     bool is_gone{false};

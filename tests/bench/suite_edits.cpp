@@ -131,7 +131,7 @@ void add_server_rows(CaseRows& rows, const Carving& carving, double run_s)
     rows.add("wire", sum_of(carving.coded_bytes) / run_s / 1e3, "KB/s", 200.0);
 }
 
-/// What a static tree would take after an edit: to be built anew over all faces.
+/// Times of static trees, which an edit makes to be built again over all faces.
 void add_rivals(const Scene& scene, CaseRows& rows)
 {
     const StaticModel made(scene);
@@ -158,7 +158,7 @@ void add_rivals(const Scene& scene, CaseRows& rows)
     }
     static_cast<void>(tree.refit());
     const BenchClock::time_point end = BenchClock::now();
-    rows.add("static tree built anew", microseconds(start, end) * 1e-3, "ms").by = "Tactus";
+    rows.add("static tree built again", microseconds(start, end) * 1e-3, "ms").by = "Tactus";
     for (const PointPeer& peer : point_peers())
     {
         if (scene.model.faces.size() > peer.most_faces)
@@ -167,8 +167,8 @@ void add_rivals(const Scene& scene, CaseRows& rows)
         }
         const BenchClock::time_point began = BenchClock::now();
         const auto built = peer.make(scene.model.faces, kRadius_diag * scene.model.diagonal_m);
-        rows.add("static tree built anew", microseconds(began, BenchClock::now()) * 1e-3, "ms").by =
-            peer.name;
+        rows.add("static tree built again", microseconds(began, BenchClock::now()) * 1e-3, "ms")
+            .by = peer.name;
     }
 }
 
@@ -178,8 +178,8 @@ void run_edits_case(const CaseContext& context, const EditsCase& test_case)
     const PinnedCore pinned(context.options.core);
     constexpr double kSpeed_diag_per_s = 0.1;
     constexpr std::uint32_t kSplits = 64;
-    const FrameRun still = make_slide(scene, kSpeed_diag_per_s, kSplits,
-                                      test_case.pool_mib * kMiB, test_case.frames);
+    const FrameRun still =
+        make_slide(scene, kSpeed_diag_per_s, kSplits, test_case.pool_mib * kMiB, test_case.frames);
     FrameRun carved = still;
     carved.rig.edit_faces = test_case.room;
     auto store = ModelStore::open(scene.model.path);
@@ -225,16 +225,14 @@ void run_edits_case(const CaseContext& context, const EditsCase& test_case)
 
 Suite edits_suite()
 {
-    return {"edits",
-            []
+    return {"edits", []
             {
-                return std::vector<Case>{
-                    make_case("bunny-69k", When::always, run_edits_case,
-                              EditsCase{kBunny, 4'000, 8, 65'536}),
-                    make_case("bunny-1.1M", When::full_only, run_edits_case,
-                              EditsCase{kFineBunny, 60'000, 32, 262'144}),
-                    make_case("tiny", When::named_only, run_edits_case,
-                              EditsCase{kTiny, 500, 4, 16'384})};
+                return std::vector<Case>{make_case("bunny-69k", When::always, run_edits_case,
+                                                   EditsCase{kBunny, 4'000, 8, 65'536}),
+                                         make_case("bunny-1.1M", When::full_only, run_edits_case,
+                                                   EditsCase{kFineBunny, 60'000, 32, 262'144}),
+                                         make_case("tiny", When::named_only, run_edits_case,
+                                                   EditsCase{kTiny, 500, 4, 16'384})};
             }};
 }
 

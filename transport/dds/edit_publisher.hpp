@@ -27,7 +27,7 @@ namespace tactus::dds
 {
 
 /// Usual room of a model for added faces.
-inline constexpr std::uint32_t kUsualEditRoom = 16'384;
+inline constexpr std::uint32_t kUsualEditRoom = 4'096;
 
 /// Controllers whose edit requests a server takes: all, or those that Participants::is_called()
 /// finds. With DDS Security, only participants with the right reach the topic.

@@ -36,13 +36,13 @@ using test::Random;
 using test::RandomEdits;
 using test::TemporaryFolder;
 
-constexpr std::uint32_t kRoom = 500;
+constexpr std::uint32_t kEditRoom = 500;
 
 /// Controller that reads the edits of one model, and the surface that its frame would have.
 class Controller
 {
 public:
-    Controller(std::uint32_t domain, const test::TinyModel& model, std::uint32_t room = kRoom)
+    Controller(std::uint32_t domain, const test::TinyModel& model, std::uint32_t room = kEditRoom)
         : client_(std::move(DdsClient::create(domain, "controller", lines.log())).value())
         , header_(ModelHeader::parse(model.header).value())
         , reader(client_->domain(), client_->catalogue(),
@@ -94,7 +94,7 @@ protected:
         server = make_server(1);
     }
     std::unique_ptr<DdsServer> make_server(std::uint32_t domain, Editors editors = {true, {}},
-                                           std::uint32_t room = kRoom)
+                                           std::uint32_t room = kEditRoom)
     {
         const auto path = folder.write(("tiny" + std::to_string(domain)).c_str(), model.file);
         std::vector<PublishedModel> models;
@@ -143,7 +143,7 @@ protected:
     std::unique_ptr<DdsServer> other;
     ModelHeader header_ = ModelHeader::parse(model.header).value();
     Random random_{11};
-    RandomEdits edits_{header_, kRoom};
+    RandomEdits edits_{header_, kEditRoom};
 };
 
 TEST_F(DdsEdits, each_edit_arrives_and_the_catalogue_says_the_room)
@@ -151,7 +151,7 @@ TEST_F(DdsEdits, each_edit_arrives_and_the_catalogue_says_the_room)
     Controller sut(2, model);
     sut.reader.follow(0, server->epoch());
     ASSERT_TRUE(both_until(sut, [&] { return sut.offer(*server) != nullptr; }));
-    EXPECT_EQ(sut.offer(*server)->edit_room, kRoom);
+    EXPECT_EQ(sut.offer(*server)->edit_room, kEditRoom);
     for (int i = 0; i < 20; ++i)
     {
         publish(*server, 3);
@@ -253,7 +253,7 @@ TEST_F(DdsEdits, lost_doubled_and_forged_samples_of_the_server_leave_the_surface
     const EditContent first = edits_.next(random_);
     const EditContent second = edits_.next(random_);
     const EditContent third = edits_.next(random_);
-    EditState wanted(header_.counts(), kRoom);
+    EditState wanted(header_.counts(), kEditRoom);
     const auto revision_is = [&](std::uint32_t revision)
     { return both_until(sut, [&] { return sut.frame.revision() == revision; }); };
     forger.write(first, 1, 0, 1);
@@ -304,7 +304,7 @@ TEST_F(DdsEdits, a_new_server_is_followed_if_its_edits_lead_on)
 {
     Controller sut(2, model);
     sut.reader.follow(0, server->epoch());
-    RandomEdits same(header_, kRoom);
+    RandomEdits same(header_, kEditRoom);
     Random seed(12);
     std::vector<EditContent> history;
     for (int i = 0; i < 30; ++i)

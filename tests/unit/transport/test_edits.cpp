@@ -24,7 +24,7 @@ namespace
 using test::Random;
 using test::RandomEdits;
 
-constexpr std::uint32_t kRoom = 3'000;
+constexpr std::uint32_t kEditRoom = 3'000;
 
 /// Model whose header the edits are coded with.
 struct EditedModel
@@ -92,7 +92,7 @@ TEST(EditCoding, shared_vertices_are_coded_once)
 TEST(EditCoding, random_edits_are_decoded_as_they_were)
 {
     Random random(1);
-    RandomEdits edits(edited_model().header, kRoom);
+    RandomEdits edits(edited_model().header, kEditRoom);
     for (int i = 0; i < 200; ++i)
     {
         const EditContent edit = edits.next(random);
@@ -181,7 +181,7 @@ TEST(EditCoding, a_box_is_only_coded_with_a_source_face)
     EXPECT_EQ(decoded.value().removed_m, Aabb{});
 }
 
-EditState empty_state(std::uint32_t room = kRoom)
+EditState empty_state(std::uint32_t room = kEditRoom)
 {
     return {edited_model().header.counts(), room};
 }
@@ -277,7 +277,7 @@ struct NaiveSurface
 TEST(EditState, is_the_sum_of_random_edits)
 {
     Random random(2);
-    RandomEdits edits(edited_model().header, kRoom);
+    RandomEdits edits(edited_model().header, kEditRoom);
     const std::uint32_t face_ids = edited_model().header.counts().face_ids();
     NaiveSurface naive;
     EditState sut = empty_state();
@@ -324,7 +324,7 @@ TEST(EditState, steps_lead_from_any_state_to_any_later_one)
     for (int round = 0; round < 60; ++round)
     {
         // Two states of one history, or two that share only their removed source faces' order.
-        RandomEdits edits(edited_model().header, kRoom);
+        RandomEdits edits(edited_model().header, kEditRoom);
         EditState from = empty_state();
         EditState target = empty_state();
         NaiveSurface naive;
