@@ -98,6 +98,21 @@ TEST(NetworkSecurity, a_network_is_not_joined_without_keys_unless_that_is_asked_
     ::unsetenv("CYCLONEDDS_URI");
 }
 
+/// Loopback included, and a configuration with keys of its own, which are not checked.
+TEST(NetworkSecurity, a_domain_is_not_joined_without_keys_that_are_required)
+{
+    const NetworkSecurity required{.keys = "", .is_plain = false, .is_required = true};
+    for (const char* uri : {"", "<CycloneDDS><Domain><Security/></Domain></CycloneDDS>"})
+    {
+        ::setenv("CYCLONEDDS_URI", uri, 1);
+        const auto refused = dds::Domain::join({5, required});
+        ASSERT_FALSE(refused) << uri;
+        EXPECT_EQ(refused.error().text, "--require-security: no keys are given; name their folder "
+                                        "with --security DIR");
+    }
+    ::unsetenv("CYCLONEDDS_URI");
+}
+
 /// Every partition that the documents name; what Cyclone makes of them the test
 /// integration.secured_programs shows.
 TEST(Rights, name_a_controllers_own_partitions_alone)
