@@ -29,6 +29,11 @@ set(CPACK_TACTUS_PREFIX ${CMAKE_INSTALL_PREFIX})
 set(CPACK_TACTUS_STRIP ${CMAKE_STRIP})
 set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/debian/check.cmake)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/stage.cmake)
+find_program(TACTUS_PYTHON python3)
+if(TACTUS_PYTHON)
+    set(CPACK_TACTUS_PYTHON ${TACTUS_PYTHON})
+    set(CPACK_POST_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/sbom.cmake)
+endif()
 
 # tactus_package(<name> SECTION <section> [ARCHITECTURE all] [DEPENDS <package>...]
 #     [RECOMMENDS <package>...] [SUGGESTS <package>...] [SERVICES <unit>...]

@@ -30,6 +30,7 @@ struct Names
     std::vector<std::string> servers;
     std::vector<std::string> controllers;
     std::vector<std::string> viewers;
+    std::vector<std::string> editors;
 };
 
 void declare_options(CommandLine& line, Site& site, Names& names)
@@ -51,6 +52,9 @@ void declare_options(CommandLine& line, Site& site, Names& names)
         .repeatable_with_more();
     line.add_option("--viewers", names.viewers,
                     "Names of viewers (spm_view): they may watch controllers")
+        .repeatable_with_more();
+    line.add_option("--editors", names.editors,
+                    "Names of editors: they may request edits of models from servers")
         .repeatable_with_more();
     line.begin_task("The keys", "tactus-keys --config site.toml --revoke hand-1");
     line.add_option("--days", site.days, "Validity of certificates, rights and the CRL, in days")
@@ -98,7 +102,8 @@ std::string take_members(Site& site, const Names& names)
     const std::pair<Role, const std::vector<std::string>*> roles[] = {
         {Role::server, &names.servers},
         {Role::controller, &names.controllers},
-        {Role::viewer, &names.viewers}};
+        {Role::viewer, &names.viewers},
+        {Role::editor, &names.editors}};
     std::set<std::string> taken;
     for (const auto& [role, of_role] : roles)
     {
@@ -124,7 +129,9 @@ std::string take_members(Site& site, const Names& names)
             return fmt::format("--renew: '{}' is not of the site", printable(name));
         }
     }
-    return site.members.empty() ? "no name is given: --servers, --controllers or --viewers" : "";
+    return site.members.empty() ? "no name is given: --servers, --controllers, --viewers or "
+                                  "--editors"
+                                : "";
 }
 
 } // namespace

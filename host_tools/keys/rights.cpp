@@ -34,14 +34,22 @@ constexpr const char* kOfServers = "server.*";
 constexpr const char* kOwn = "{}";
 constexpr const char* kOwnPieces = "{}.*";
 
+/// Topics of edits. Both have the name of the model's server as their partition.
+constexpr const char* kEditRequests = "edit_requests";
+constexpr const char* kEdits = "edits";
+
 constexpr std::array kServerWrites{Right{"catalogue", kUnnamed}, Right{"chunks", kAny},
-                                   Right{"objects", kOfServers}, Right{"motion", kOfServers}};
+                                   Right{"objects", kOfServers}, Right{"motion", kOfServers},
+                                   Right{kEdits, kOwn}};
 constexpr std::array kServerReads{Right{"catalogue", kUnnamed}, Right{"wanted", kAny},
-                                  Right{"telemetry", kAny}, Right{"refinement_state", kAny}};
+                                  Right{"telemetry", kAny}, Right{"refinement_state", kAny},
+                                  Right{kEditRequests, kOwn}};
 constexpr std::array kControllerWrites{Right{"wanted", kOwn}, Right{"telemetry", kOwn},
                                        Right{"refinement_state", kOwn}};
 constexpr std::array kControllerReads{Right{"catalogue", kUnnamed}, Right{"chunks", kOwnPieces},
-                                      Right{"objects", kOfServers}, Right{"motion", kOfServers}};
+                                      Right{"objects", kOfServers}, Right{"motion", kOfServers},
+                                      Right{kEdits, kAny}};
+constexpr std::array kEditorWrites{Right{kEditRequests, kAny}};
 constexpr std::array kViewerReads{Right{"telemetry", kAny}, Right{"refinement_state", kAny}};
 
 struct Rights
@@ -50,9 +58,10 @@ struct Rights
     std::span<const Right> writes;
     std::span<const Right> reads;
 };
-constexpr std::array<Rights, 3> kRights{{{"server", kServerWrites, kServerReads},
+constexpr std::array<Rights, 4> kRights{{{"server", kServerWrites, kServerReads},
                                          {"controller", kControllerWrites, kControllerReads},
-                                         {"viewer", {}, kViewerReads}}};
+                                         {"viewer", {}, kViewerReads},
+                                         {"editor", kEditorWrites, kControllerReads}}};
 
 constexpr std::string_view kDocument = R"(<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance">

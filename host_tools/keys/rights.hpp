@@ -14,9 +14,10 @@ enum class Role : std::uint8_t
     server,     ///< Serves models and scenes, and may watch.
     controller, ///< Requests and reads in partitions of its name.
     viewer,     ///< Reads telemetry and refinement states.
+    editor,     ///< Requests edits of models; reads what a controller reads.
 };
 
-/// Name of the role: "server", "controller" or "viewer".
+/// Name of the role: "server", "controller", "viewer" or "editor".
 [[nodiscard]] const char* name_of(Role role) noexcept;
 
 /// Governance document (XML) of a domain: peers without a certificate are refused, and everything

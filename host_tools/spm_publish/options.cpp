@@ -44,6 +44,7 @@ void declare_options(CommandLine& line, Options& options)
         .integer_between(std::uint32_t{0}, dds::kMaxDomain)
         .show_default();
     line.add_security_options(options.security);
+    line.add_option_file("--config", "TOML file with options; the command line overrides the file");
     line.begin_task("The run", "spm_publish ball.spm --watch --seconds 60");
     line.add_option("--seconds,--duration", options.seconds,
                     "Duration of the run, in seconds [default: no limit]")

@@ -70,6 +70,7 @@ void declare_options(CommandLine& line, Options& options, std::string& feed_udp)
                             .integer_between(std::uint32_t{0}, dds::kMaxDomain)
                             .show_default();
     line.add_security_options(options.security);
+    line.add_option_file("--config", "TOML file with options; the command line overrides the file");
     line.begin_task("Play a recording, or compare two",
                     "spm_view --replay run.rec --replay again.rec");
     const auto replay =

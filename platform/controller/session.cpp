@@ -269,10 +269,11 @@ std::optional<Refusal> Session::connect()
     if (options_.is_watched)
     {
         const bool has_keys = !options_.security.keys.empty();
+        const bool is_protected = has_keys || options_.security.is_required;
         const std::string name =
             options_.name.empty() && !has_keys ? fmt::format("hrtc-{}", getpid()) : options_.name;
         auto client = dds::DdsClient::create({options_.domain, options_.security}, name, log_line);
-        if (!client && options_.transport == TransportKind::file && !has_keys)
+        if (!client && options_.transport == TransportKind::file && !is_protected)
         {
             log_line(client.error().text + "; viewers can't see the run");
             return std::nullopt;

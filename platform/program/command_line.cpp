@@ -487,14 +487,16 @@ void CommandLine::add_former_name(const std::string& former, const std::string& 
 
 void CommandLine::add_security_options(NetworkSecurity& security)
 {
-    const CommandOption keys =
-        add_option("--security", security.keys,
-                   "Folder of keys that tactus-keys made: the domain is joined with DDS Security, "
-                   "authenticated and encrypted [default: none]");
+    security_ = &security;
+    add_option("--security", security.keys,
+               "Folder of keys that tactus-keys made: the domain is joined with DDS Security, "
+               "authenticated and encrypted [default: none]");
     add_flag("--plain", security.is_plain,
              "Join a network of CYCLONEDDS_URI without --security; every program on that network "
-             "can take part")
-        .excludes(keys);
+             "can take part. Not with --security or --require-security");
+    add_flag("--require-security", security.is_required,
+             "Refuse to join a domain without --security, on loopback too; for the option files of "
+             "a site");
 }
 
 void CommandLine::begin_task(const std::string& task, const std::string& example)
@@ -539,7 +541,8 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
     {
         app_->parse(argc, argv);
         choose_log_style();
-        const std::string fault = tables_ == nullptr ? "" : place_tables();
+        std::string fault = tables_ == nullptr ? "" : place_tables();
+        fault = fault.empty() ? fault_of_security() : fault;
         return fault.empty() ? std::nullopt : std::optional(fail(fault, kExitUsage));
     }
     catch (const CLI::ConfigError& error)
@@ -593,6 +596,18 @@ std::string CommandLine::option_without_value() const
         }
     }
     return {};
+}
+
+/// An option file may state that a flag is false; therefore the values decide.
+std::string CommandLine::fault_of_security() const
+{
+    if (security_ == nullptr || !security_->is_plain ||
+        (security_->keys.empty() && !security_->is_required))
+    {
+        return {};
+    }
+    return fmt::format("{} excludes --plain; see --help",
+                       security_->keys.empty() ? "--require-security" : "--security");
 }
 
 std::vector<std::string> CommandLine::given() const

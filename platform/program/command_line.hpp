@@ -97,7 +97,8 @@ public:
     /// Declares that the option `name` was called `former` in an older version, both without
     /// dashes. Use of the former name is wrong usage, and the message gives the new one.
     void add_former_name(const std::string& former, const std::string& name);
-    /// Adds --security and --plain, for programs that use DDS.
+    /// Adds --security, --plain and --require-security, for programs that use DDS. Parsing refuses
+    /// --plain beside one of the others. `security` must outlive parse().
     void add_security_options(NetworkSecurity& security);
     /// Begins a task, a section of --help: the options declared after this call stand in it, below
     /// the example.
@@ -125,6 +126,7 @@ private:
     [[nodiscard]] std::string option_without_value() const;
     [[nodiscard]] std::string place_in_file(const std::string& text) const;
     [[nodiscard]] std::string place_tables();
+    [[nodiscard]] std::string fault_of_security() const;
 
     void choose_log_style();
 
@@ -137,6 +139,7 @@ private:
     /// New name by former name, both without dashes.
     std::map<std::string, std::string> former_names_;
     std::unique_ptr<CLI::App> app_;
+    const NetworkSecurity* security_{nullptr}; ///< Null: no DDS.
 };
 
 } // namespace tactus

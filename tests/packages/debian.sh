@@ -94,6 +94,23 @@ holds python3-tactus 'usr/lib/python3/dist-packages/tactus\.cpython-3.*\.so'
 dpkg-deb --field new/libtactus0_*.deb Depends | grep -q 'libddsc' \
     || fail "libtactus0 does not depend on what it is linked to"
 
+# The bill of materials names each package, and what it depends on.
+python3 -B - "new/tactus_$version.spdx.json" new/*.deb <<'PYTHON' || fail 'the bill of materials'
+import json, re, subprocess, sys
+with open(sys.argv[1], encoding="utf-8") as file:
+    bill = json.load(file)
+relations = {(r["spdxElementId"], r["relationshipType"], r["relatedSpdxElement"])
+             for r in bill["relationships"]}
+for deb in sys.argv[2:]:
+    name, depends = (subprocess.run(["dpkg-deb", "--field", deb, field], check=True,
+                                    capture_output=True, text=True).stdout.strip()
+                     for field in ("Package", "Depends"))
+    for need in re.findall(r"(?:^|[,|])\s*([a-z0-9][a-z0-9+.-]*)", depends):
+        row = (f"SPDXRef-{name}", "DEPENDS_ON", "SPDXRef-" + need.replace("+", "-"))
+        if row not in relations:
+            sys.exit(f"{name} depends on {need}, which is not named")
+PYTHON
+
 # The same content as an older version.
 for package in new/*.deb; do
     rm -rf unpacked

@@ -7,11 +7,12 @@
 namespace tactus
 {
 
-/// The options --security and --plain of all programs that use DDS.
+/// The options --security, --plain and --require-security of all programs that use DDS.
 struct NetworkSecurity
 {
-    std::string keys;     ///< Folder of keys that tactus-keys made; empty: none.
-    bool is_plain{false}; ///< True if a network may be joined without keys.
+    std::string keys;        ///< Folder of keys that tactus-keys made; empty: none.
+    bool is_plain{false};    ///< True if a network may be joined without keys.
+    bool is_required{false}; ///< True if no domain may be joined without keys, loopback included.
 };
 
 } // namespace tactus

@@ -180,6 +180,11 @@ Result<std::optional<KeyFolder>, Refusal> take_keys(const DomainChoice& choice)
     const NetworkSecurity& security = choice.security;
     if (security.keys.empty())
     {
+        if (security.is_required)
+        {
+            return Refusal{"--require-security: no keys are given; name their folder with "
+                           "--security DIR"};
+        }
         if (!security.is_plain && is_open_to_network(configuration_of_user()))
         {
             return Refusal{

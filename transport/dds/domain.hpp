@@ -37,7 +37,7 @@ enum class Party : std::uint8_t
 struct DomainChoice
 {
     /// Joins without keys, on any network.
-    DomainChoice(std::uint32_t domain) : id(domain), security{{}, true} {}
+    DomainChoice(std::uint32_t domain) : id(domain), security{{}, true, false} {}
     DomainChoice(std::uint32_t domain, NetworkSecurity chosen)
         : id(domain), security(std::move(chosen))
     {
@@ -60,12 +60,13 @@ class Domain
 {
 public:
     /// Joins a domain, id 0 to kMaxDomain. Refused: keys that read_key_folder() refuses; without
-    /// keys a network beyond this machine, unless the choice is plain or CYCLONEDDS_URI enables DDS
-    /// Security; and Cyclone's own reasons, for example an unknown element in CYCLONEDDS_URI. The
-    /// default configuration has room for ten processes with a server or watcher on one machine and
-    /// domain; further ones are refused. A process that is server and controller must join as the
-    /// server first (otherwise refused); its controllers then find only its own servers. After
-    /// Party::both they find those of other processes too, as long as that domain lives.
+    /// keys any domain if the choice requires them, and a network beyond this machine, unless the
+    /// choice is plain or CYCLONEDDS_URI enables DDS Security; and Cyclone's own reasons, for
+    /// example an unknown element in CYCLONEDDS_URI. The default configuration has room for ten
+    /// processes with a server or watcher on one machine and domain; further ones are refused. A
+    /// process that is server and controller must join as the server first (otherwise refused); its
+    /// controllers then find only its own servers. After Party::both they find those of other
+    /// processes too, as long as that domain lives.
     [[nodiscard]] static Result<Domain, Refusal> join(const DomainChoice& choice,
                                                       Party party = Party::server);
 

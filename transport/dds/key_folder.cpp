@@ -3,6 +3,7 @@
 #include "transport/dds/key_folder.hpp"
 
 #include "transport/base/printable.hpp"
+#include "transport/base/read_file.hpp"
 #include "transport/dds/openssl_handles.hpp"
 #include "transport/model_name.hpp"
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -32,6 +34,9 @@ namespace
 
 namespace fs = std::filesystem;
 using namespace openssl;
+
+/// Largest size of a file of certificates in bytes.
+constexpr std::uintmax_t kCertificatesMost = 1U << 20U;
 
 std::time_t time_of(const ASN1_TIME* time)
 {
@@ -243,6 +248,29 @@ std::string name_of(const X509* certificate)
                                         static_cast<std::size_t>(ASN1_STRING_length(text))});
 }
 
+/// Cyclone reads the first certificate of a file; another one would be left out without a word.
+std::string why_several(const std::string& folder)
+{
+    constexpr std::string_view kBegin = "-----BEGIN CERTIFICATE-----";
+    for (const char* file : {kIdentityCaFile, kPermissionsCaFile, kIdentityFile})
+    {
+        const auto bytes = read_file(join_path(folder, file), kCertificatesMost);
+        const std::string& text = bytes ? bytes.value() : "";
+        std::size_t count = 0;
+        for (std::size_t at = text.find(kBegin); at != std::string::npos;
+             at = text.find(kBegin, at + kBegin.size()))
+        {
+            ++count;
+        }
+        if (!bytes || count > 1)
+        {
+            return bytes ? fmt::format("{} has {} certificates; Cyclone DDS reads one", file, count)
+                         : fmt::format("{} can't be read", file);
+        }
+    }
+    return "";
+}
+
 /// Returns the fault of the files or an empty text, and fills in name and validity.
 std::string check_files(KeyFolder& keys, std::uint32_t domain, std::time_t now)
 {
@@ -311,6 +339,7 @@ Result<KeyFolder, Refusal> read_key_folder(const std::string& path, std::uint32_
         fault = fmt::format("other users may read {}; chmod 600 makes it a secret", kKeyFile);
     }
     fault = fault.empty() ? why_changeable(keys.path) : fault;
+    fault = fault.empty() ? why_several(keys.path) : fault;
     fault = fault.empty() ? check_files(keys, domain, now) : fault;
     if (!fault.empty())
     {

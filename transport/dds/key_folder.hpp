@@ -36,9 +36,10 @@ struct KeyFolder
 
 /// Reads and checks a folder of keys. Refused in one line: a missing or broken file; a private key
 /// that other users may read or that does not belong to the certificate; a folder or file that they
-/// may change; a certificate or CRL that is not valid at `now`; a certificate that is revoked or of
-/// another authority; documents that were changed, are not for `domain` or give no rights to the
-/// certificate's name; domains above 230. Ordinary thread; reads files.
+/// may change; a file with several certificates; a certificate or CRL that is not valid at `now`; a
+/// certificate that is revoked or of another authority; documents that were changed, are not for
+/// `domain` or give no rights to the certificate's name; domains above 230. Ordinary thread; reads
+/// files.
 [[nodiscard]] Result<KeyFolder, Refusal> read_key_folder(const std::string& path,
                                                          std::uint32_t domain, std::time_t now);
 

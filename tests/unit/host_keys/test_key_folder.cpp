@@ -130,6 +130,24 @@ TEST_F(KeysOfASite, of_another_authority_are_all_made_again)
     EXPECT_EQ(why_refused(now), "");
 }
 
+/// A new authority is prepared while programs still use the present one.
+TEST_F(KeysOfASite, of_the_next_authority_leave_the_present_ones_alone)
+{
+    make(now);
+    const std::string present = text_in(keys_of("hand-1") / dds::kKeyFile);
+    Site next = site;
+    next.authority += "-next";
+    next.output += "-next";
+    ASSERT_TRUE(make_keys(next, now));
+    EXPECT_EQ(text_in(keys_of("hand-1") / dds::kKeyFile), present);
+    EXPECT_EQ(why_refused(now), "");
+    EXPECT_TRUE(dds::read_key_folder(next.output + "/hand-1", kDomain, now));
+    const fs::path ca = fs::path(next.output) / "hand-1" / dds::kIdentityCaFile;
+    put("hand-1", dds::kIdentityCaFile,
+        text_in(keys_of("hand-1") / dds::kIdentityCaFile) + text_in(ca));
+    EXPECT_EQ(why_refused(now), "identity_ca.pem has 2 certificates; Cyclone DDS reads one");
+}
+
 TEST_F(KeysOfASite, are_in_an_archive_with_the_right_modes_and_owner)
 {
     make(now);

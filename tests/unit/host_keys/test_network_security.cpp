@@ -7,9 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdlib>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace tactus
 {
@@ -98,27 +100,81 @@ TEST(NetworkSecurity, a_network_is_not_joined_without_keys_unless_that_is_asked_
     ::unsetenv("CYCLONEDDS_URI");
 }
 
-/// Every partition that the documents name; what Cyclone makes of them the test
-/// integration.secured_programs shows.
-TEST(Rights, name_a_controllers_own_partitions_alone)
+/// Loopback included, and a configuration with keys of its own, which are not checked.
+TEST(NetworkSecurity, a_domain_is_not_joined_without_keys_that_are_required)
 {
-    const std::string of_controller =
-        keys::permissions(keys::Role::controller, "hand-1", 7, 0, 86'400);
-    const std::string of_viewer = keys::permissions(keys::Role::viewer, "desk", 7, 0, 86'400);
-    std::set<std::string> partitions;
-    for (std::size_t at = 0; (at = of_controller.find("<partition>", at)) != std::string::npos;)
+    const NetworkSecurity required{.keys = "", .is_plain = false, .is_required = true};
+    for (const char* uri : {"", "<CycloneDDS><Domain><Security/></Domain></CycloneDDS>"})
     {
-        at += 11;
-        partitions.insert(of_controller.substr(at, of_controller.find('<', at) - at));
+        ::setenv("CYCLONEDDS_URI", uri, 1);
+        const auto refused = dds::Domain::join({5, required});
+        ASSERT_FALSE(refused) << uri;
+        EXPECT_EQ(refused.error().text, "--require-security: no keys are given; name their folder "
+                                        "with --security DIR");
     }
-    EXPECT_EQ(partitions, (std::set<std::string>{"", "hand-1", "hand-1.*", "server.*"}));
-    EXPECT_NE(of_controller.find("<subject_name>CN=hand-1</subject_name>"), std::string::npos);
-    EXPECT_NE(of_controller.find("<not_before>1970-01-01T00:00:00</not_before>"
-                                 "<not_after>1970-01-02T00:00:00</not_after>"),
+    ::unsetenv("CYCLONEDDS_URI");
+}
+
+namespace
+{
+
+/// What a document allows, as "publish TOPIC PARTITION" with the topic's last word.
+std::set<std::string> rights_in(const std::string& document)
+{
+    std::set<std::string> rights;
+    const auto text_of = [&](std::string_view tag, std::size_t at)
+    {
+        const std::size_t begin = document.find(tag, at) + tag.size();
+        return document.substr(begin, document.find('<', begin) - begin);
+    };
+    for (const std::string verb : {"publish", "subscribe"})
+    {
+        for (std::size_t at = 0; (at = document.find("<" + verb + ">", at)) != std::string::npos;
+             ++at)
+        {
+            const std::string topic = text_of("<topic>", at);
+            rights.insert(verb + topic.substr(topic.rfind('/')) + " " + text_of("<partition>", at));
+        }
+    }
+    return rights;
+}
+
+std::set<std::string> rights_of(keys::Role role, const std::string& name)
+{
+    return rights_in(keys::permissions(role, name, 7, 0, 86'400));
+}
+
+} // namespace
+
+/// What Cyclone makes of the documents is shown by hostile.dds_security.
+TEST(Rights, are_the_least_of_each_role)
+{
+    const std::set<std::string> watching{"subscribe/telemetry *", "subscribe/refinement_state *"};
+    EXPECT_EQ(rights_of(keys::Role::viewer, "desk"), watching);
+    EXPECT_EQ(rights_of(keys::Role::controller, "hand-1"),
+              (std::set<std::string>{"publish/wanted hand-1", "publish/telemetry hand-1",
+                                     "publish/refinement_state hand-1", "subscribe/catalogue ",
+                                     "subscribe/chunks hand-1.*", "subscribe/objects server.*",
+                                     "subscribe/motion server.*", "subscribe/edits *"}));
+    EXPECT_EQ(rights_of(keys::Role::server, "station"),
+              (std::set<std::string>{
+                  "publish/catalogue ", "publish/chunks *", "publish/objects server.*",
+                  "publish/motion server.*", "publish/edits station", "subscribe/catalogue ",
+                  "subscribe/wanted *", "subscribe/telemetry *", "subscribe/refinement_state *",
+                  "subscribe/edit_requests station"}));
+    EXPECT_EQ(rights_of(keys::Role::editor, "desk-2"),
+              (std::set<std::string>{"publish/edit_requests *", "subscribe/catalogue ",
+                                     "subscribe/chunks desk-2.*", "subscribe/objects server.*",
+                                     "subscribe/motion server.*", "subscribe/edits *"}));
+}
+
+TEST(Rights, are_for_one_certificate_and_its_time)
+{
+    const std::string document = keys::permissions(keys::Role::controller, "hand-1", 7, 0, 86'400);
+    EXPECT_NE(document.find("<subject_name>CN=hand-1</subject_name>"), std::string::npos);
+    EXPECT_NE(document.find("<not_before>1970-01-01T00:00:00</not_before>"
+                            "<not_after>1970-01-02T00:00:00</not_after>"),
               std::string::npos);
-    EXPECT_EQ(of_viewer.find("<publish>"), std::string::npos);
-    EXPECT_EQ(of_viewer.find("chunks"), std::string::npos);
-    EXPECT_NE(of_viewer.find("telemetry"), std::string::npos);
 }
 
 /// A controller could otherwise send motion to another one in the server's name.

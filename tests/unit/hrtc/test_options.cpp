@@ -223,6 +223,11 @@ TEST_F(HrtcOptions, come_to_a_file_that_reads_as_they_do)
     EXPECT_NE(all.find("\nplace=[\"0,0,0\", \"1,0,0\"]\n"), std::string::npos) << all;
     folder_.write("all.toml", all);
     EXPECT_EQ(shown_by(parse, "hrtc --config all.toml --print-config"), all);
+    const std::string secured =
+        shown_by(parse, "hrtc --model ball --security keys --require-security --print-config");
+    EXPECT_NE(secured.find("\nrequire-security=true\n"), std::string::npos) << secured;
+    folder_.write("secured.toml", secured); // It says, too, that `plain` is false.
+    EXPECT_EQ(shown_by(parse, "hrtc --config secured.toml --print-config"), secured);
 }
 
 TEST_F(HrtcOptions, are_explained_in_printable_text)
