@@ -172,14 +172,18 @@ tactus_module(host_tools/spm_build ${host_layer} platform/program host_tools/mes
 # The program that looks into a model.
 tactus_module(host_tools/spm_inspect ${host_layer} platform/program host_tools/mesh
     host_tools/encode)
+# Changes of models' surfaces.
+tactus_module(host_tools/edit ${host_layer} host_tools/mesh host_tools/encode)
 # The program that serves models and scenes.
 tactus_module(host_tools/spm_publish ${host_layer} platform/program host_tools/mesh
-    host_tools/scene host_tools/web)
+    host_tools/scene host_tools/web host_tools/encode host_tools/edit host_tools/build)
+# The program that runs the others under one name.
+tactus_module(host_tools/tactus ${host_layer} platform/program)
 # The program that makes the keys of a site.
 tactus_module(host_tools/keys ${host_layer} platform/program)
 # The program that shows a run in a browser; it plays recordings, too.
 tactus_module(host_tools/spm_view ${host_layer} platform/program host_tools/mesh host_tools/encode
-    host_tools/web platform/recording)
+    host_tools/web platform/recording platform/devices platform/machine)
 
 # Tests may include everything.
 tactus_module(tests *)

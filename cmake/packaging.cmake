@@ -107,7 +107,7 @@ tactus_package(tactus-host
     SECTION science
     SERVICES spm_publish.service spm_view.service
     DEPENDS libjs-three libjs-dygraphs
-    SUGGESTS tactus-doc
+    SUGGESTS tactus-doc tactus-controller
     DESCRIPTION "haptic touch of huge triangle meshes - programs of the host
 Tactus lets a hand feel triangle meshes that are larger than the memory of
 the machine that computes the force.
@@ -115,7 +115,8 @@ the machine that computes the force.
 spm_build turns meshes into models, spm_inspect checks and shows them,
 spm_publish serves them to controllers over DDS, spm_view shows in a browser
 what controllers touch, both as services if wanted; tactus-keys makes the keys
-of DDS Security. The services are not enabled:
+of DDS Security. tactus is one name for these programs and the controller.
+The services are not enabled:
 /etc/default/spm_publish first says what to serve.")
 tactus_package(tactus-controller
     SECTION science

@@ -20,7 +20,7 @@ Commands:
             -- -R integration or -- -L bench
   demo      build the programs, make a model, publish it over DDS on this machine and touch it for
             10 s at 1 kHz; the report is build/demo/report.json. --scene: 200 objects and two
-            simulated operators; --view: a browser shows it
+            simulated operators; --carve: the operator carves a channel; --view: a browser shows it
   bench     build the benchmarks and run every suite; the results in build/bench are JSON and text.
             BENCH-OPTIONS after -- are for tactus_bench, for example -- --core 1
   docs      build the pages and the API reference as a site in build/docs/html; a dead link or
@@ -45,6 +45,7 @@ Options:
   --ci          packages: also those of .ci/run (cmake/packages-ci.txt, cmake/packages-docs.txt)
   --bench       packages: also the peers of tactus_bench (cmake/packages-bench.txt)
   --scene       demo: a scene instead of one model
+  --carve       demo: carve a channel into the model, and print the removed volume
   --view        demo: serve a live view at the printed address
   --seconds N   demo: duration in seconds, 1 to 3600 [default: 10]
   --domain N    demo: DDS domain, 0 to 232 [default: that of the programs]
@@ -245,9 +246,9 @@ make_scene() {
     [[ ${PIPESTATUS[0]} == 0 ]] || fail 2 "spm_build could not make $demo/scene"
 }
 
-run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE [WITH_VIEW]]]
+run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE [WITH_VIEW [WITH_CARVE]]]]
     local code=0 network=() realtime=() report="$demo/report.json" program
-    local served="$demo/bumpy.spm" touched=(--model bumpy) models=("$demo/bumpy.spm")
+    local served=("$demo/bumpy.spm") touched=(--model bumpy) models=("$demo/bumpy.spm")
     for program in spm_build spm_publish hrtc ${4:+spm_view}; do
         [[ -x "$build/bin/$program" ]] || fail 2 "$build/bin/$program is not built"
     done
@@ -258,24 +259,33 @@ run_demo() { # run_demo SECONDS [DOMAIN [WITH_SCENE [WITH_VIEW]]]
     rm -f "$report"
     if [[ -n "${3:-}" ]]; then
         make_scene
-        served="$demo/scene/scene.gltf"
+        served=("$demo/scene/scene.gltf")
         touched=(--scene scene --tools 2 --pool-mib 8)
         models=("$demo"/scene/*.spm)
     else
         make_model
+    fi
+    if [[ -n "${5:-}" ]]; then
+        # The view takes the model from its server, whose edits it then shows.
+        served+=(--edits)
+        touched+=(--tool sphere:0.002 --motion slide --edit carve:100 --pool-mib 8)
+        models=()
     fi
     if ! may_run_realtime; then
         echo "No right to SCHED_FIFO or locked memory here: running with --allow-no-rt, so the" \
             "times below are those of an ordinary thread."
         realtime=(--allow-no-rt)
     fi
-    start_program 'ready on DDS domain' spm_publish "$served" "${network[@]}"
+    start_program 'ready on DDS domain' spm_publish "${served[@]}" "${network[@]}"
     if [[ -n "${4:-}" ]]; then
         start_view "${models[@]}" "${network[@]}"
     fi
     "$build/bin/hrtc" "${touched[@]}" --device sim --rate 1000 --duration "$1" --report "$report" \
         "${realtime[@]}" "${network[@]}" || code=$?
     stop_programs
+    if [[ -n "${5:-}" ]]; then
+        sed -n 's/^.*edits of .bumpy.: /Edits: /p' "$demo/spm_publish.log"
+    fi
     if [[ -f "$report" ]]; then
         echo "Report: $report"
     fi
@@ -341,7 +351,7 @@ number_in() { # number_in OPTION VALUE LOW HIGH
 main() {
     local command='' seconds=10 domain='' more_options=()
     local lists=("$root"/cmake/packages{,-test}.txt)
-    local bench_options=() peers='' targets=(all) kept='' scene='' view='' architecture=''
+    local bench_options=() peers='' targets=(all) kept='' scene='' view='' carve='' architecture=''
     while (($# > 0)); do
         case "$1" in
             build | programs | test | demo | bench | docs | rt-machine | packages)
@@ -351,6 +361,7 @@ main() {
             --scene) scene=yes ;;
             --arm64) architecture=arm64 ;;
             --view) view=spm_view ;;
+            --carve) carve=yes ;;
             --quick) bench_options+=(--quick) ;;
             --peers | --docs)
                 [[ "$1" == --peers ]] || kept=$root/docs/benchmarks
@@ -399,8 +410,11 @@ main() {
     if [[ "$command" != rt-machine && -n "$architecture" ]]; then
         fail 3 "--arm64 is for 'rt-machine' only"
     fi
-    if [[ "$command" != demo && -n "$scene$view" ]]; then
-        fail 3 "--scene and --view are for 'demo' only"
+    if [[ "$command" != demo && -n "$scene$view$carve" ]]; then
+        fail 3 "--scene, --view and --carve are for 'demo' only"
+    fi
+    if [[ -n "$scene" && -n "$carve" ]]; then
+        fail 3 "--carve: the models of --scene are not edited"
     fi
     if [[ "$command" == bench && -n "$kept" && ! -d "${TACTUS_MESHES:-}" ]]; then
         fail 3 "--docs: TACTUS_MESHES must name the folder with the well-known meshes; the results\
@@ -413,7 +427,9 @@ main() {
             install_packages "${lists[@]}"
             build_targets all
             ;;
-        programs) build_programs spm_build spm_inspect spm_publish spm_view tactus-keys hrtc ;;
+        programs)
+            build_programs spm_build spm_inspect spm_publish spm_view tactus tactus-keys hrtc
+            ;;
         test)
             install_packages "${lists[@]}"
             [[ ! " ${more_options[*]} " =~ " -L "|bench|extended ]] || targets+=(tests_left_out)
@@ -444,7 +460,7 @@ main() {
             if [[ -z "${TACTUS_BUILD_DIR:-}" ]]; then
                 build_programs spm_build spm_publish hrtc ${view:+"$view"}
             fi
-            run_demo "$seconds" "$domain" "$scene" "$view"
+            run_demo "$seconds" "$domain" "$scene" "$view" "$carve"
             ;;
     esac
 }

@@ -85,6 +85,17 @@ inline constexpr std::uint32_t kBroadWalks = 4;
 /// Largest number of scene changes that a frame takes; 208 B each. Further ones of the same frame
 /// are refused (ChangeRefusal::too_many).
 inline constexpr std::uint32_t kMaxSceneChanges = 64;
+/// Largest number of faces that one edit removes, and that it adds; 44 B each in a queue. An edit of
+/// so many takes a frame's budget at 1 kHz. A larger one is refused (EditRefusal::too_large).
+inline constexpr std::uint32_t kMaxEditFaces = 1'024;
+/// Largest number of edits that a frame takes. Further ones of the same frame are refused
+/// (EditRefusal::too_many).
+inline constexpr std::uint32_t kMaxEditsPerFrame = 2;
+/// Largest room of a model for faces that edits add; about 150 B each. Frame::start refuses more.
+inline constexpr std::uint32_t kMaxAddedFaces = 1U << 18U;
+/// Largest number of boxes round the removed faces of a model; 24 B each. With more, the two boxes
+/// whose union is smallest become one: more coarse faces then bound the distance from below only.
+inline constexpr std::uint32_t kMaxRemovedBoxes = 32;
 /// Largest number of active faces of all models together: a face's slot number takes 24 bits beside
 /// its owner's byte. 108 B each with their part of the tree. Frame::start refuses larger pools.
 inline constexpr std::uint32_t kMaxPoolFaces = (1U << 24) - 1;

@@ -3,6 +3,7 @@
 #include "transport/pool_plan.hpp"
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "transport/chunk_loader.hpp"
 
@@ -116,12 +117,21 @@ bool try_plan_streamed_models(const FrameSetup& setup, std::span<const ModelHead
 }
 
 std::size_t least_pool_bytes(const FrameSetup& setup, std::span<const ModelHeader> headers,
-                             std::size_t cache_bytes)
+                             std::size_t cache_bytes, std::span<const std::uint32_t> edit_faces)
 {
-    std::vector<ModelCapacities> capacities(headers.size());
+    TACTUS_ASSERT(edit_faces.empty() || edit_faces.size() == headers.size());
+    const auto does_fit = [&](std::size_t steps)
+    {
+        std::vector<ModelCapacities> capacities(headers.size());
+        for (std::size_t i = 0; i < edit_faces.size(); ++i)
+        {
+            capacities[i].edit_faces = edit_faces[i];
+        }
+        return try_plan_pools(setup, headers, steps * kStep, cache_bytes, capacities);
+    };
     std::size_t too_small = 0;
     std::size_t enough = 1;
-    while (!try_plan_pools(setup, headers, enough * kStep, cache_bytes, capacities))
+    while (!does_fit(enough))
     {
         if (enough >= kMostSteps)
         {
@@ -133,8 +143,7 @@ std::size_t least_pool_bytes(const FrameSetup& setup, std::span<const ModelHeade
     while (enough - too_small > 1)
     {
         const std::size_t middle = too_small + (enough - too_small) / 2;
-        const bool fits = try_plan_pools(setup, headers, middle * kStep, cache_bytes, capacities);
-        (fits ? enough : too_small) = middle;
+        (does_fit(middle) ? enough : too_small) = middle;
     }
     return enough * kStep;
 }

@@ -5,6 +5,7 @@
 #include "rt_core/frame/frame_setup.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace tactus
@@ -12,7 +13,8 @@ namespace tactus
 
 /// Plans the capacities of each model so that a frame, all pools and the ChunkLoader fit into
 /// `bytes` of an arena, with `cache_bytes` for pages (0: the usual share). `setup.models` is
-/// ignored. False if they do not fit; `capacities` is then unspecified.
+/// ignored. ModelCapacities::edit_faces is an input. False if they do not fit; `capacities` is then
+/// unspecified.
 [[nodiscard]] bool try_plan_pools(const FrameSetup& setup, std::span<const ModelHeader> headers,
                                   std::size_t bytes, std::size_t cache_bytes,
                                   std::span<ModelCapacities> capacities);
@@ -25,9 +27,10 @@ namespace tactus
                                             std::size_t cache_bytes, ModelCapacities& room);
 
 /// Smallest `bytes` for which try_plan_pools() succeeds, rounded up to 64 KiB; 0 if 1 TiB is not
-/// enough.
+/// enough. `edit_faces` is ModelCapacities::edit_faces of each model, or empty for none.
 [[nodiscard]] std::size_t least_pool_bytes(const FrameSetup& setup,
                                            std::span<const ModelHeader> headers,
-                                           std::size_t cache_bytes);
+                                           std::size_t cache_bytes,
+                                           std::span<const std::uint32_t> edit_faces = {});
 
 } // namespace tactus

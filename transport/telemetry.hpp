@@ -5,13 +5,17 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/local_surface.hpp"
+#include "rt_core/spm/header.hpp"
+#include "transport/pose.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <type_traits>
+#include <vector>
 
-// Any thread: these are values; no call waits or allocates.
+// Any thread: these are values; those with vectors allocate.
 namespace tactus
 {
 
@@ -87,6 +91,38 @@ struct ModelTelemetry
 
 /// Maximum number of models in Telemetry, which has those with the lowest numbers.
 inline constexpr std::uint32_t kMaxShownModels = 8;
+
+/// Length of the range of object numbers that one ObjectsTelemetry lists in full (sweep_begin),
+/// besides the objects of awake pairs.
+inline constexpr std::uint32_t kObjectSweep = 32;
+/// Maximum number of objects in one ObjectsTelemetry.
+inline constexpr std::size_t kMaxShownObjects = kObjectSweep + kMaxPairs;
+
+/// State of one object at the end of a frame.
+struct ObjectTelemetry
+{
+    /// Epoch of the server that shows the object; 0: placed by the controller.
+    std::uint64_t server_epoch{0};
+    std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
+    std::uint32_t number{0}; ///< Number of the object on the controller.
+    std::string name;        ///< Name of the object or else of its model; printable ASCII.
+    ContentHash model{};
+    Pose pose; ///< Pose of the source mesh in the world.
+
+    bool operator==(const ObjectTelemetry&) const = default;
+};
+
+/// Objects of awake pairs, and in turn those of kObjectSweep numbers.
+struct ObjectsTelemetry
+{
+    /// Start of the range of object numbers, up to `sweep_end`, in which `objects` lists every
+    /// object.
+    std::uint32_t sweep_begin{0};
+    std::uint32_t sweep_end{0};
+    std::vector<ObjectTelemetry> objects;
+
+    bool operator==(const ObjectsTelemetry&) const = default;
+};
 
 /// State at the end of one frame, and counts of frames since the start.
 struct Telemetry

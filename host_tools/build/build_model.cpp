@@ -205,13 +205,13 @@ Result<BuiltModel, Refusal> build_model(const TriangleMesh& mesh, const std::str
     {
         return Refusal{source + ": " + simplification.error().text};
     }
-    const auto written =
-        write_spm(path, prepared.value(), simplification.value(),
-                  {prepared.value().position_bits, options.base_faces, options.region_size_m,
-                   options.threads, [&options](std::size_t done, std::size_t total) {
-                       tell(options, kSimplified, 1.0,
-                            static_cast<double>(done) / static_cast<double>(total));
-                   }});
+    const auto written = write_spm(
+        path, prepared.value(), simplification.value(),
+        {prepared.value().position_bits, options.base_faces, options.region_size_m,
+         options.revision, options.threads, [&options](std::size_t done, std::size_t total) {
+             tell(options, kSimplified, 1.0,
+                  static_cast<double>(done) / static_cast<double>(total));
+         }});
     if (!written)
     {
         return Refusal{written.error().text};

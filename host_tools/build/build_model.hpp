@@ -28,6 +28,7 @@ struct ModelOptions
     std::optional<double> region_size_m;
     /// Bits of a coordinate. [default: kMinPositionBits, or more if the mesh needs them]
     std::optional<unsigned> position_bits;
+    std::uint32_t revision{0}; ///< HeaderFields::revision.
     bool keeps_winding{false};
     bool is_centered{false};
     /// Memory limit in MiB. [default: the machine's available memory]

@@ -263,6 +263,7 @@ Result<HeaderFields, Refusal> write_spm(const std::filesystem::path& path,
     }
     mark_occupied(grid, mesh);
     HeaderFields fields = describe(prepared, simplification, pieces, grid, options.position_bits);
+    fields.revision = options.revision;
     place_parts(fields, pieces.counts(), grid.count());
     auto file = AtomicFile::create(path);
     if (!file)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/scene/placed_models.hpp"
+#include "host_tools/spm_publish/edited_models.hpp"
 #include "host_tools/spm_publish/namesakes.hpp"
 #include "host_tools/spm_publish/options.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
@@ -14,6 +15,7 @@
 #include "transport/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_server.hpp"
+#include "transport/dds/security.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <fmt/format.h>
@@ -21,6 +23,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -53,7 +56,8 @@ struct Extras
     std::unique_ptr<dds::TelemetryReader> controllers; ///< Null without --watch and --metrics.
     std::optional<Watch> watch;
     std::optional<ServerMetrics> metrics;
-    Namesakes* namesakes{nullptr}; ///< Null if other servers cannot be found.
+    std::optional<EditedModels> edited; ///< None without --edits.
+    Namesakes* namesakes{nullptr};      ///< Null if other servers cannot be found.
 };
 
 /// Replaces the scene in options.files by its models, and returns the scene's objects.
@@ -120,7 +124,7 @@ Result<std::vector<dds::PublishedModel>, Refusal> open_models(const Options& opt
         {
             return *damage;
         }
-        models.push_back({options.names[i], std::move(store).value()});
+        models.push_back({options.names[i], std::move(store).value(), options.edit_room});
     }
     return models;
 }
@@ -142,6 +146,19 @@ void print_models(ServingReport& report, dds::DdsServer& server, const std::stri
                                       scene.empty() ? "" : fmt::format(" as scene '{}'", scene)));
     }
     report.print_line(fmt::format("ready on DDS domain {}; end with Ctrl-C", domain));
+}
+
+/// Controllers that may edit. Without names, all that reach the topic: those of this machine, or
+/// with keys those with the right; on a network without keys, none.
+dds::Editors editors_of(const Options& options)
+{
+    dds::Editors editors;
+    editors.names = options.editors;
+    const char* uri = std::getenv("CYCLONEDDS_URI");
+    const bool is_closed = uri == nullptr || !dds::is_open_to_network(uri);
+    editors.all = std::ranges::count(options.editors, "any") > 0 ||
+                  (options.editors.empty() && (!options.security.keys.empty() || is_closed));
+    return editors;
 }
 
 /// Lines of the pose file; empty without a pose file.
@@ -218,7 +235,9 @@ std::optional<Refusal> start_metrics(const Options& options, dds::DdsServer& ser
     }
     report.print_line(fmt::format("metrics on http://127.0.0.1:{}/metrics", page.value()->port()));
     extras.metrics.emplace(std::move(page).value());
-    extras.metrics->update(server, *extras.controllers); // The first request needs metrics.
+    extras.metrics->update(server, *extras.controllers,
+                           extras.edited ? &*extras.edited
+                                         : nullptr); // The first request needs metrics.
     return std::nullopt;
 }
 
@@ -299,6 +318,10 @@ void serve(dds::DdsServer& server, ServingReport& report, Extras& extras,
             play(extras, server.objects(), now_s());
         }
         server.step();
+        if (extras.edited)
+        {
+            extras.edited->step();
+        }
         if (extras.controllers != nullptr)
         {
             extras.controllers->poll();
@@ -309,7 +332,8 @@ void serve(dds::DdsServer& server, ServingReport& report, Extras& extras,
         }
         if (extras.metrics)
         {
-            extras.metrics->update(server, *extras.controllers);
+            extras.metrics->update(server, *extras.controllers,
+                                   extras.edited ? &*extras.edited : nullptr);
         }
         if (extras.namesakes != nullptr)
         {
@@ -317,6 +341,54 @@ void serve(dds::DdsServer& server, ServingReport& report, Extras& extras,
         }
         report.update(server);
     }
+}
+
+/// Prints the edits of each model.
+void print_edits(const EditedModels& edited, dds::DdsServer& server, ServingReport& report)
+{
+    for (std::size_t i = 0; i < server.models().size(); ++i)
+    {
+        const EditedModels::Counts& counts = edited.counts(i);
+        report.print_line(fmt::format(
+            "edits of '{}': {}, {}, {:.3f} mm^3 removed, {:.3f} mm^3 added, {} of {} added faces "
+            "used, {} refused",
+            server.models()[i].model().name, counted(counts.changes, "change"),
+            counted(edited.revision(i), "edit"), counts.removed_m3 * 1e9, counts.gained_m3 * 1e9,
+            edited.added_faces(i), server.models()[i].model().edit_room, counts.refused));
+    }
+    const dds::EditPublisher::Counters& sent = server.edits()->counters();
+    report.print_line(fmt::format("{} accepted, {} refused, {:.1f} KB of edits sent",
+                                  counted(sent.requests, "edit request"), sent.requests_refused,
+                                  static_cast<double>(sent.bytes) / 1e3));
+}
+
+/// Saves the edited model if --save is given and there were edits.
+std::optional<Refusal> save_edits(const Options& options, const EditedModels& edited,
+                                  ServingReport& report)
+{
+    if (options.save_path.empty())
+    {
+        return std::nullopt;
+    }
+    if (edited.revision(0) == 0)
+    {
+        report.print_line(
+            fmt::format("--save: {} is not written, since there were no edits", options.save_path));
+        return std::nullopt;
+    }
+    std::vector<std::string> notes;
+    const auto saved = edited.save(0, options.save_path, notes);
+    if (!saved)
+    {
+        return Refusal{"--save: " + saved.error().text};
+    }
+    for (const std::string& note : notes)
+    {
+        report.print_line("note: " + note);
+    }
+    report.print_line(fmt::format("saved {}: {} faces, revision {}", options.save_path,
+                                  saved.value().source_faces, saved.value().revision));
+    return std::nullopt;
 }
 
 int run(int argc, char** argv)
@@ -369,7 +441,7 @@ int run(int argc, char** argv)
     { report.print_line(text, LogLevel::warning); };
     auto server =
         dds::DdsServer::create({options.domain, options.security}, std::move(models).value(), warn,
-                               options.scene, dds::Party::both);
+                               options.scene, dds::Party::both, editors_of(options));
     if (!server)
     {
         return line.fail(server.error().text);
@@ -384,6 +456,15 @@ int run(int argc, char** argv)
     {
         return line.fail(extras.error().text);
     }
+    if (options.has_edits)
+    {
+        auto edited = EditedModels::create(*server.value(), warn);
+        if (!edited)
+        {
+            return line.fail(edited.error().text);
+        }
+        extras.value().edited = std::move(edited).value();
+    }
     if (const auto refusal = start_metrics(options, *server.value(), extras.value(), report))
     {
         return line.fail(refusal->text);
@@ -394,6 +475,14 @@ int run(int argc, char** argv)
     const auto counters = server.value()->counters();
     report.print_line(fmt::format("ended; {} chunks, {:.1f} KB sent", counters.pieces_sent,
                                   static_cast<double>(counters.bytes_sent) / 1e3));
+    if (const auto& edited = extras.value().edited)
+    {
+        print_edits(*edited, *server.value(), report);
+        if (const auto refusal = save_edits(options, *edited, report))
+        {
+            return line.fail(refusal->text);
+        }
+    }
     return kExitDone;
 }
 

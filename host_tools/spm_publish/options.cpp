@@ -6,8 +6,10 @@
 #include "host_tools/scene/scene.hpp"
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "platform/program/command_line.hpp"
+#include "rt_core/limits.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/edit_publisher.hpp"
 #include "transport/material_text.hpp"
 #include "transport/model_name.hpp"
 
@@ -53,6 +55,24 @@ void declare_options(CommandLine& line, Options& options)
                     "Port of 127.0.0.1 for Prometheus; 0 selects a free port. /metrics reports the "
                     "served models and the state of each controller in the domain [default: none]")
         .integer_between(std::uint32_t{0}, std::uint32_t{65'535});
+    line.begin_task("Edits", "spm_publish ball.spm --edits --save carved.spm");
+    line.add_flag("--edits", options.has_edits,
+                  "Let controllers change the models, as 'hrtc --edit' does. Needs about 300 bytes "
+                  "a face. On this machine's loopback interface every controller may edit; with "
+                  "--security those whose certificates permit it");
+    line.add_option("--edits-from", options.editors,
+                    "Controllers that may edit: MACHINE or MACHINE:PROCESS, or with --security the "
+                    "name of a certificate or cert:HEX. The value any allows every controller "
+                    "[default: see --edits; with --plain none]")
+        .repeatable_with_more();
+    line.add_option("--edit-room", options.edit_room,
+                    fmt::format("Number of faces that edits may add to each model, at most {} "
+                                "[default: {}]",
+                                kMaxAddedFaces, dds::kUsualEditRoom))
+        .integer_between(std::uint32_t{1}, kMaxAddedFaces);
+    line.add_option("--save", options.save_path,
+                    "File for the edited model, written at the end of the run if there were edits: "
+                    "the whole file or none. May be the file that is served");
     line.begin_task("Moving objects", "spm_publish ball.spm --poses path.txt --poses-loop");
     line.add_option(
         "--poses", options.poses_path,
@@ -118,6 +138,34 @@ std::string take_names(Options& options)
     return "";
 }
 
+/// Fault of the options of edits; empty if there is none. Sets the usual room.
+std::string check_edits(Options& options)
+{
+    const char* of_edits = !options.editors.empty()     ? "--edits-from"
+                           : options.edit_room > 0      ? "--edit-room"
+                           : !options.save_path.empty() ? "--save"
+                                                        : nullptr;
+    if (!options.has_edits)
+    {
+        return of_edits == nullptr ? "" : fmt::format("{}: needs --edits", of_edits);
+    }
+    options.edit_room = options.edit_room > 0 ? options.edit_room : dds::kUsualEditRoom;
+    if (!options.save_path.empty() && (options.has_scene || options.files.size() > 1))
+    {
+        return "--save: only one model can be saved; serve it alone";
+    }
+    for (const std::string& editor : options.editors)
+    {
+        if (!is_valid_server(editor))
+        {
+            return fmt::format("--edits-from: '{}' is not MACHINE[:PROCESS], cert: with 12 "
+                               "hexadecimal digits (0-9 a-f), or any",
+                               printable(editor));
+        }
+    }
+    return "";
+}
+
 /// Fault of a combination of options; empty if there is none. Sets the names.
 std::string check_together(Options& options)
 {
@@ -133,6 +181,10 @@ std::string check_together(Options& options)
     if (!options.scene.empty() && !is_valid_name(options.scene))
     {
         return fmt::format("--scene: '{}' is not {}", printable(options.scene), kNameForm);
+    }
+    if (const std::string fault = check_edits(options); !fault.empty())
+    {
+        return fault;
     }
     if (options.poses_path.empty() && (options.poses_loop || options.poses_rate_hz))
     {

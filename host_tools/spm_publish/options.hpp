@@ -37,6 +37,12 @@ struct Options
     std::optional<double> poses_rate_hz;
     bool watch{false};
     std::optional<std::uint32_t> metrics_port;
+    /// Slots of each model for faces that edits add; 0: no edits.
+    std::uint32_t edit_room{0};
+    bool has_edits{false};
+    /// Controllers that may edit; empty: editors by the network's kind (main.cpp).
+    std::vector<std::string> editors;
+    std::string save_path; ///< File of the edited model; empty: none.
 };
 
 /// Names of the models in these files: the given ones, then the stems of further files. Refused if

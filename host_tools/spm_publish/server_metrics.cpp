@@ -51,9 +51,45 @@ void tell_subscribers(web::PrometheusText& text, const dds::DdsServer& server)
          [](const auto& subscriber) { return subscriber.bytes_sent; });
 }
 
+void tell_edits(web::PrometheusText& text, dds::DdsServer& server, const EditedModels& edited)
+{
+    const auto tell = [&](const char* name, const char* type, const char* help, auto value)
+    {
+        text.family(name, type, help);
+        for (std::size_t i = 0; i < server.models().size(); ++i)
+        {
+            text.sample({{"model", server.models()[i].model().name}},
+                        static_cast<double>(value(i)));
+        }
+    };
+    tell("tactus_model_edits_total", "counter", "Edits of a model's surface.",
+         [&](std::size_t i) { return edited.revision(i); });
+    tell("tactus_model_added_faces", "gauge", "Faces that edits added to a model.",
+         [&](std::size_t i) { return edited.added_faces(i); });
+    tell("tactus_model_edits_refused_total", "counter",
+         "Edit requests that a model's surface could not take.",
+         [&](std::size_t i) { return edited.counts(i).refused; });
+    tell("tactus_model_removed_cubic_metres_total", "counter",
+         "Volume that edits removed from a model.",
+         [&](std::size_t i) { return edited.counts(i).removed_m3; });
+    const dds::EditPublisher::Counters& counters = server.edits()->counters();
+    const auto tell_one = [&text](const char* name, const char* help, std::uint64_t value)
+    {
+        text.family(name, "counter", help);
+        text.sample({}, static_cast<double>(value));
+    };
+    tell_one("tactus_edit_requests_total", "Accepted edit requests of controllers.",
+             counters.requests);
+    tell_one("tactus_edit_requests_refused_total", "Refused edit requests of controllers.",
+             counters.requests_refused);
+    tell_one("tactus_edit_bytes_sent_total", "Payload bytes of edits and their sums.",
+             counters.bytes);
+}
+
 } // namespace
 
-std::string server_metrics(dds::DdsServer& server, const dds::TelemetryReader& controllers)
+std::string server_metrics(dds::DdsServer& server, const dds::TelemetryReader& controllers,
+                           const EditedModels* edited)
 {
     web::PrometheusText text;
     const dds::DdsServer::Counters counters = server.counters();
@@ -80,6 +116,10 @@ std::string server_metrics(dds::DdsServer& server, const dds::TelemetryReader& c
          server.objects().objects());
     tell_models(text, server);
     tell_subscribers(text, server);
+    if (edited != nullptr)
+    {
+        tell_edits(text, server, *edited);
+    }
     std::vector<const dds::WatchedController*> watched;
     for (const dds::WatchedController& controller : controllers.controllers())
     {
@@ -89,13 +129,14 @@ std::string server_metrics(dds::DdsServer& server, const dds::TelemetryReader& c
     return text.text();
 }
 
-void ServerMetrics::update(dds::DdsServer& server, const dds::TelemetryReader& controllers)
+void ServerMetrics::update(dds::DdsServer& server, const dds::TelemetryReader& controllers,
+                           const EditedModels* edited)
 {
     const auto now = Clock::now();
     if (now - last_ >= kPeriod)
     {
         last_ = now;
-        page_->publish(server_metrics(server, controllers));
+        page_->publish(server_metrics(server, controllers, edited));
     }
 }
 

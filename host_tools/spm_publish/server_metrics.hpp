@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/spm_publish/edited_models.hpp"
 #include "host_tools/web/metrics_server.hpp"
 #include "transport/dds/dds_server.hpp"
 #include "transport/dds/telemetry.hpp"
@@ -15,9 +16,10 @@ namespace tactus
 {
 
 /// Metrics of a server and of the controllers on its domain, in Prometheus' text format
-/// (docs/view.md).
+/// (docs/view.md). `edited` may be null.
 [[nodiscard]] std::string server_metrics(dds::DdsServer& server,
-                                         const dds::TelemetryReader& controllers);
+                                         const dds::TelemetryReader& controllers,
+                                         const EditedModels* edited);
 
 /// Keeps the metrics page of a server up to date, to the second.
 class ServerMetrics
@@ -26,7 +28,8 @@ public:
     explicit ServerMetrics(std::unique_ptr<web::MetricsServer> page) : page_(std::move(page)) {}
 
     /// Publishes new metrics if a second has passed. Call it often, after controllers.poll().
-    void update(dds::DdsServer& server, const dds::TelemetryReader& controllers);
+    void update(dds::DdsServer& server, const dds::TelemetryReader& controllers,
+                const EditedModels* edited);
 
 private:
     using Clock = std::chrono::steady_clock;

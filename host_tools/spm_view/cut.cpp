@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <optional>
 #include <utility>
@@ -66,35 +67,46 @@ std::vector<RecordId> split_records(const DecodedModel& model,
     return records;
 }
 
-/// Appends the numbers of vertices and faces, and the vertices that faces use. Returns the place of
-/// each vertex id among these; kNoneValue for unused ones.
-std::vector<std::uint32_t> append_vertices(const DecodedModel& model, const Replay& replay,
-                                           std::string& bytes)
+/// Faces that are shown, ascending: the active ones without those that edits removed. An active
+/// face has its final corners if its error is zero.
+std::vector<FaceId> shown_faces(const DecodedModel& model, const Replay& replay,
+                                const EditState* edits)
 {
-    const ModelCounts counts = model.header().counts();
-    constexpr std::uint32_t none = VertexId::kNoneValue;
-    std::vector<std::uint32_t> places(counts.vertices(), none);
-    for (std::uint32_t face = 0; face < counts.face_ids(); ++face)
+    std::vector<FaceId> faces;
+    for (std::uint32_t face = 0; face < model.header().counts().face_ids(); ++face)
     {
-        if (replay.is_active({face}))
+        const bool is_gone = replay.is_active({face}) && edits != nullptr &&
+                             edits->is_removed({face}) &&
+                             error_in_quanta(model.error_of({face}, replay.state({face}))) == 0.0F;
+        if (replay.is_active({face}) && !is_gone)
         {
-            for (const VertexId corner : replay.corners({face}))
-            {
-                places[corner.value] = 0;
-            }
+            faces.push_back({face});
         }
     }
-    std::uint32_t count = 0;
-    for (std::uint32_t& place : places)
+    return faces;
+}
+
+/// Appends the vertices that the faces use, and sets their number. Returns the place of each vertex
+/// id among these; kNoneValue for unused ones.
+std::vector<std::uint32_t> append_vertices(const DecodedModel& model, const Replay& replay,
+                                           std::span<const FaceId> faces, std::uint32_t& count,
+                                           std::string& bytes)
+{
+    constexpr std::uint32_t none = VertexId::kNoneValue;
+    std::vector<std::uint32_t> places(model.header().counts().vertices(), none);
+    for (const FaceId face : faces)
     {
-        place = place == none ? none : count++;
+        for (const VertexId corner : replay.corners(face))
+        {
+            places[corner.value] = 0;
+        }
     }
-    append(bytes, count);
-    append(bytes, replay.face_count());
+    count = 0;
     for (std::uint32_t vertex = 0; vertex < places.size(); ++vertex)
     {
         if (places[vertex] != none)
         {
+            places[vertex] = count++;
             append(bytes, model.position_m({vertex}));
         }
     }
@@ -199,37 +211,56 @@ std::vector<RefinementStatePage> splittable_part(const DecodedModel& model,
 }
 
 Result<std::string, Refusal> cut_bytes(const DecodedModel& model,
-                                       std::span<const RefinementStatePage> pages)
+                                       std::span<const RefinementStatePage> pages,
+                                       const EditState* edits)
 {
     Replay replay(model);
     if (auto refusal = split_all(replay, model, pages))
     {
         return *refusal;
     }
-    std::string bytes;
-    const std::vector<std::uint32_t> places = append_vertices(model, replay, bytes);
+    const std::vector<FaceId> faces = shown_faces(model, replay, edits);
+    std::uint32_t vertices = 0;
+    std::string positions;
+    const std::vector<std::uint32_t> places =
+        append_vertices(model, replay, faces, vertices, positions);
+    std::string corners;
     std::string errors;
     std::string levels;
     const float quantum_m = model.header().quantum_m();
-    for (std::uint32_t face = 0; face < model.header().counts().face_ids(); ++face)
+    for (const FaceId face : faces)
     {
-        if (!replay.is_active({face}))
+        for (const VertexId corner : replay.corners(face))
         {
-            continue;
+            append(corners, places[corner.value]);
         }
-        for (const VertexId corner : replay.corners({face}))
-        {
-            append(bytes, places[corner.value]);
-        }
-        const FaceState state = replay.state({face});
-        append(errors, error_in_quanta(model.error_of({face}, state)) * quantum_m);
+        const FaceState state = replay.state(face);
+        append(errors, error_in_quanta(model.error_of(face, state)) * quantum_m);
         append(levels, state.is_base() ? std::uint16_t{0} : model.record(state.record()).depth);
     }
-    if (replay.face_count() % 2 != 0)
+    auto count = static_cast<std::uint32_t>(faces.size());
+    if (edits != nullptr)
+    {
+        for (const auto& [slot, face] : edits->added())
+        {
+            for (const Vec3f& corner_m : face.corners_m)
+            {
+                append(positions, corner_m);
+                append(corners, vertices++);
+            }
+            append(errors, 0.0F);
+            append(levels, std::uint16_t{0});
+            ++count;
+        }
+    }
+    if (count % 2 != 0)
     {
         append(levels, std::uint16_t{0});
     }
-    return bytes + errors + levels;
+    std::string bytes;
+    append(bytes, vertices);
+    append(bytes, count);
+    return bytes + positions + corners + errors + levels;
 }
 
 } // namespace tactus::view

@@ -6,6 +6,7 @@
 #include "host_tools/encode/replay.hpp"
 #include "host_tools/spm_view/known_model.hpp"
 #include "transport/base/refusal.hpp"
+#include "transport/edit_state.hpp"
 #include "transport/front.hpp"
 
 #include <cstdint>
@@ -48,9 +49,14 @@ splittable_part(const DecodedModel& model, std::span<const RefinementStatePage> 
 ///     u32 vertices v, u32 faces f, f32 positions[3 v], u32 corners[3 f], f32 error_m[f],
 ///     u16 level[f], u16 0 if f is odd
 ///
+/// Faces that `edits` removed are missing if they are at full resolution; coarse faces that stand
+/// for removed ones are still there. The faces that edits added follow the others, with error and
+/// level 0. `edits` may be null.
+///
 /// Positions are in metres in the model's frame. `level` is the depth of the record that made the
 /// face, 0 in the base mesh; `error_m` bounds the face's distance from the source.
 [[nodiscard]] Result<std::string, Refusal> cut_bytes(const DecodedModel& model,
-                                                     std::span<const RefinementStatePage> pages);
+                                                     std::span<const RefinementStatePage> pages,
+                                                     const EditState* edits = nullptr);
 
 } // namespace tactus::view

@@ -6,8 +6,11 @@
 #include "rt_core/spm/content_key.hpp"
 #include "rt_core/spm/header.hpp"
 #include "transport/base/refusal.hpp"
+#include "transport/edit_state.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,6 +34,11 @@ public:
     [[nodiscard]] virtual const std::string& name() const noexcept = 0;
     [[nodiscard]] virtual const ContentHash& hash() const noexcept = 0;
     [[nodiscard]] virtual const ModelHeader& header() const noexcept = 0;
+
+    /// Surface after the edits of its server so far; null without edits.
+    [[nodiscard]] virtual std::shared_ptr<const EditState> edits() const { return nullptr; }
+    /// Number of the last of these edits; 0: none.
+    [[nodiscard]] virtual std::uint32_t edit_revision() const { return 0; }
 
     /// Waits, at most two seconds, until these pieces can be read. Refused if some are then
     /// missing; the refusal counts them. The model must have the keys.

@@ -54,6 +54,9 @@ void LiveState::publish(const std::vector<dds::WatchedController>& told,
     std::erase_if(
         kept_, [&](const auto& each)
         { return std::ranges::find(fronts, each.first, &dds::SeenFront::id) == fronts.end(); });
+    std::erase_if(
+        shown_, [&](const auto& each)
+        { return std::ranges::find(told, each.first, &dds::WatchedController::id) == told.end(); });
     for (const dds::SeenFront& front : fronts)
     {
         keep(front);
@@ -62,6 +65,17 @@ void LiveState::publish(const std::vector<dds::WatchedController>& told,
     {
         LiveController& live = next->controllers.emplace_back();
         live.told = controller;
+        auto& shown = shown_[controller.id];
+        shown.erase(shown.lower_bound(controller.objects.sweep_begin),
+                    shown.lower_bound(controller.objects.sweep_end));
+        for (const ObjectTelemetry& object : controller.objects.objects)
+        {
+            shown.insert_or_assign(object.number, object);
+        }
+        for (const auto& [number, object] : shown)
+        {
+            live.shown.push_back(object);
+        }
         if (const auto kept = kept_.find(controller.id); kept != kept_.end())
         {
             live.front = kept->second.fronts.back();

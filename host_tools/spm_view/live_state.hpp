@@ -38,6 +38,8 @@ struct LiveController
     dds::WatchedController told;
     FrontPointer front;              ///< Refinement state; null if none was received.
     std::vector<SeenObject> objects; ///< Objects, ascending by their number on the controller.
+    /// The same objects as telemetry reports them, more often; empty for a recording.
+    std::vector<ObjectTelemetry> shown;
     /// True for a recording, which lacks times, deadlines and the causes of fades.
     bool is_recorded{false};
 };
@@ -94,6 +96,8 @@ private:
     mutable std::condition_variable news_;
     std::shared_ptr<const Snapshot> snapshot_{std::make_shared<Snapshot>()};
     std::map<dds::ControllerId, Kept> kept_;
+    /// Objects of each controller in its telemetry, by their number on the controller.
+    std::map<dds::ControllerId, std::map<std::uint32_t, ObjectTelemetry>> shown_;
 };
 
 /// Text of a controller's id in hexadecimal digits.

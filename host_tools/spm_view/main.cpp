@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/spm_view/feed_sender.hpp"
 #include "host_tools/spm_view/film.hpp"
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_fetcher.hpp"
@@ -34,7 +35,7 @@ namespace
 
 /// Interval of the polls for DDS data; the second value applies while data of models are in
 /// transit.
-constexpr std::chrono::milliseconds kLook{25};
+constexpr std::chrono::milliseconds kLook{5};
 constexpr std::chrono::milliseconds kBusyLook{1};
 
 /// End of serving: at a stop request, or after --seconds since the start.
@@ -61,6 +62,7 @@ struct Ears
     std::unique_ptr<dds::TelemetryReader> telemetry;
     std::unique_ptr<dds::RefinementStateReader> fronts;
     std::unique_ptr<ModelFetcher> models; ///< Null if this program may not request pieces.
+    std::optional<FeedSender> feed;       ///< None without --feed-udp.
 };
 
 void look(Ears& ears, LiveState& live)
@@ -78,6 +80,10 @@ void look(Ears& ears, LiveState& live)
         }
     }
     live.publish(ears.telemetry->controllers(), ears.fronts->fronts());
+    if (ears.feed)
+    {
+        ears.feed->send(*live.newest());
+    }
 }
 
 void watch(Ears& ears, LiveState& live, const Stay& stay)
@@ -112,7 +118,7 @@ Result<Ears, Refusal> listen(const dds::Domain& domain, ModelShelf& shelf)
     {
         return telemetry ? fronts.error() : telemetry.error();
     }
-    Ears ears{std::move(telemetry).value(), std::move(fronts).value(), nullptr};
+    Ears ears{std::move(telemetry).value(), std::move(fronts).value(), nullptr, std::nullopt};
     if (models)
     {
         ears.models = std::move(models).value();
@@ -151,9 +157,19 @@ int show_live(const CommandLine& line, const Options& options, ModelShelf& shelf
     {
         return line.fail(ears.error().text);
     }
+    if (options.feed_udp)
+    {
+        auto feed = FeedSender::open({options.feed_udp->address, options.feed_udp->port});
+        if (!feed)
+        {
+            return line.fail(feed.error().text);
+        }
+        ears.value().feed.emplace(std::move(feed).value());
+    }
     LiveState live;
-    const auto server = serve({live, shelf, options.domain, TACTUS_JAVASCRIPT_DIR}, options,
-                              fmt::format("DDS domain {}", options.domain));
+    const auto server =
+        serve({live, shelf, options.domain, TACTUS_JAVASCRIPT_DIR, nullptr, options.pages}, options,
+              fmt::format("DDS domain {}", options.domain));
     if (!server)
     {
         return line.fail(server.error().text);
@@ -178,7 +194,7 @@ int show_recordings(const CommandLine& line, const Options& options, ModelShelf&
     const Films films(std::move(developed));
     const LiveState live;
     const auto server =
-        serve({live, shelf, options.domain, TACTUS_JAVASCRIPT_DIR, &films}, options,
+        serve({live, shelf, options.domain, TACTUS_JAVASCRIPT_DIR, &films, options.pages}, options,
               fmt::format("{} frames of {}", films.frames(),
                           options.recordings.size() == 1 ? options.recordings.front()
                                                          : "two recordings"));

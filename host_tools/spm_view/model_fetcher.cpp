@@ -6,6 +6,7 @@
 #include "transport/base_fetch.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_link.hpp"
+#include "transport/dds/edit_reader.hpp"
 #include "transport/dds/header_fetch.hpp"
 #include "transport/served_model.hpp"
 
@@ -53,9 +54,19 @@ class FetchedModel final : public KnownModel, private PieceSink
 {
 public:
     /// `served.base` must be complete.
-    explicit FetchedModel(ServedModel served)
+    FetchedModel(ServedModel served, const dds::Domain& domain, const dds::Catalogue& catalogue,
+                 const Log& log)
         : served_(std::move(served)), header_(ModelHeader::parse(served_.header).value())
     {
+        if (served_.edit_room > 0)
+        {
+            edits_ = std::make_unique<dds::EditReader>(
+                domain, catalogue,
+                std::vector<dds::EditReader::Model>{
+                    {served_.name, served_.hash, header_, served_.edit_room}},
+                log);
+            edits_->follow(0, served_.server_epoch);
+        }
         pieces_[{ContentKind::base, 0}] = std::move(served_.base);
     }
 
@@ -92,12 +103,26 @@ public:
         return Done{};
     }
 
+    [[nodiscard]] std::shared_ptr<const EditState> edits() const override
+    {
+        const std::lock_guard lock(mutex_);
+        return edits_ != nullptr && edit_revision_ > 0
+                   ? std::make_shared<const EditState>(edits_->state(0))
+                   : last_edits_;
+    }
+    [[nodiscard]] std::uint32_t edit_revision() const override
+    {
+        const std::lock_guard lock(mutex_);
+        return edit_revision_;
+    }
+
     /// Polls the link and requests wanted pieces. Only the fetcher's thread calls it and
     /// leave_server().
     void step()
     {
         served_.link->poll(*this);
         const std::lock_guard lock(mutex_);
+        take_edits();
         is_gone_ = served_.link->state() == LinkState::server_gone;
         const auto now = Clock::now();
         const bool is_stuck =
@@ -122,10 +147,31 @@ public:
     {
         served_.link.reset();
         const std::lock_guard lock(mutex_);
+        if (edits_ != nullptr) // Its surface stays; the catalogue does not.
+        {
+            last_edits_ =
+                edit_revision_ > 0 ? std::make_shared<const EditState>(edits_->state(0)) : nullptr;
+            edits_.reset();
+        }
         is_gone_ = true;
     }
 
 private:
+    /// Takes the server's edits. The mutex must be held.
+    void take_edits()
+    {
+        if (edits_ == nullptr)
+        {
+            return;
+        }
+        edits_->poll();
+        while (edits_->next(0) != nullptr)
+        {
+            edits_->pop(0);
+        }
+        edit_revision_ = edits_->state(0).revision();
+    }
+
     using Entries = std::array<ChunkEntry, kChunksPerIndexPage>;
 
     /// Marks a piece as wanted; for a chunk without its index page, which has its hash, that page
@@ -198,6 +244,9 @@ private:
     std::map<std::uint32_t, Entries> entries_; ///< Sizes and hashes of chunks, by index page.
     std::set<ContentKey, KeyOrder> wanted_;    ///< Missing pieces that may be requested.
     std::set<ContentKey, KeyOrder> waiting_;   ///< Wanted chunks without their index page.
+    std::unique_ptr<dds::EditReader> edits_;   ///< Null if the model can't be edited.
+    std::uint32_t edit_revision_{0};
+    std::shared_ptr<const EditState> last_edits_; ///< Surface when the server was left.
     std::vector<ContentKey> asked_; ///< Pieces of the last request that have not arrived.
 };
 
@@ -226,7 +275,7 @@ Result<std::unique_ptr<ModelFetcher>, Refusal> ModelFetcher::create(const dds::D
         return catalogue.error();
     }
     std::unique_ptr<ModelFetcher> fetcher(
-        new ModelFetcher(std::move(catalogue).value(), shelf, std::move(log)));
+        new ModelFetcher(domain, std::move(catalogue).value(), shelf, std::move(log)));
     auto exchange = dds::PieceExchange::create(
         domain, fetcher->catalogue_, domain.certificate().empty() ? kName : domain.certificate());
     if (!exchange)
@@ -237,8 +286,9 @@ Result<std::unique_ptr<ModelFetcher>, Refusal> ModelFetcher::create(const dds::D
     return fetcher;
 }
 
-ModelFetcher::ModelFetcher(dds::Catalogue catalogue, ModelShelf& shelf, Log log)
-    : catalogue_(std::move(catalogue)), shelf_(shelf), log_(std::move(log))
+ModelFetcher::ModelFetcher(const dds::Domain& domain, dds::Catalogue catalogue, ModelShelf& shelf,
+                           Log log)
+    : domain_(domain), catalogue_(std::move(catalogue)), shelf_(shelf), log_(std::move(log))
 {
 }
 
@@ -293,7 +343,8 @@ void ModelFetcher::step(const ContentHash& hash, Search& search)
         if (state == BaseFetch::State::done)
         {
             search.base.reset();
-            search.model = std::make_shared<FetchedModel>(std::move(search.served));
+            search.model =
+                std::make_shared<FetchedModel>(std::move(search.served), domain_, catalogue_, log_);
             shelf_.add(search.model);
         }
         else if (state == BaseFetch::State::refused)
@@ -325,6 +376,8 @@ void ModelFetcher::take_header(const ContentHash& hash, Search& search)
     {
         search.served.name = search.header.offer().name;
         search.served.hash = hash;
+        search.served.server_epoch = search.header.offer().server_epoch;
+        search.served.edit_room = search.header.offer().edit_room;
         search.served.header = std::move(search.header.header());
         search.served.link =
             std::make_unique<dds::DdsLink>(*exchange_, catalogue_, search.header.offer(), log_);

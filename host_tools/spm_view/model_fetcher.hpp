@@ -42,11 +42,12 @@ public:
 private:
     struct Search;
 
-    ModelFetcher(dds::Catalogue catalogue, ModelShelf& shelf, Log log);
+    ModelFetcher(const dds::Domain& domain, dds::Catalogue catalogue, ModelShelf& shelf, Log log);
 
     void step(const ContentHash& hash, Search& search);
     void take_header(const ContentHash& hash, Search& search);
 
+    const dds::Domain& domain_;
     dds::Catalogue catalogue_;
     ModelShelf& shelf_;
     Log log_;

@@ -18,6 +18,13 @@ class CommandLine;
 namespace tactus::view
 {
 
+/// IPv4 address and port; 127.0.0.1 is 0x7F000001.
+struct FeedAddress
+{
+    std::uint32_t address{0x7F00'0001U};
+    std::uint16_t port{0};
+};
+
 /// Options of the command line; checked, in SI units.
 struct Options
 {
@@ -27,6 +34,8 @@ struct Options
     std::uint32_t domain{0};
     NetworkSecurity security;
     std::optional<double> seconds;
+    std::string pages;                   ///< Folder of the user's pages; empty: none.
+    std::optional<FeedAddress> feed_udp; ///< Receiver of the feed's datagrams.
 };
 
 /// Reads the command line. Returns the exit code instead if the program should leave: after --help,

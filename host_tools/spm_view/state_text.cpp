@@ -136,9 +136,13 @@ Json cuts_json(const RefinementState& front, const ModelShelf& shelf)
         {
             refined += std::popcount(page.refined);
         }
+        const auto known = shelf.find(model.hash);
+        const std::uint32_t edits = known != nullptr ? known->edit_revision() : 0;
         cuts.push_back({{"hash", hash_text(model.hash)},
-                        {"is_resident", shelf.has(model.hash)},
-                        {"cut", fmt::format("{:016x}", cut_id(model.pages))},
+                        {"is_resident", known != nullptr},
+                        {"cut", fmt::format("{:016x}{}", cut_id(model.pages),
+                                            edits > 0 ? fmt::format("-{}", edits) : "")},
+                        {"edits", edits},
                         {"pages", model.pages.size()},
                         {"refined", refined},
                         {"requested", model.requested.size()}});

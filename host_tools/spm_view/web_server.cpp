@@ -4,9 +4,11 @@
 
 #include "host_tools/spm_view/boxes.hpp"
 #include "host_tools/spm_view/cut.hpp"
+#include "host_tools/spm_view/feed.hpp"
 #include "host_tools/spm_view/page.hpp"
 #include "host_tools/spm_view/state_text.hpp"
 #include "host_tools/web/loopback_server.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
@@ -26,6 +28,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -99,8 +102,17 @@ struct WebServer::Inside
     void declare_answers();
     [[nodiscard]] std::string state_for(const httplib::Request& request) const;
     void send_states(const httplib::Request& request, httplib::Response& response) const;
-    void send_events(const httplib::Request& request, httplib::Response& response);
-    bool send_next(httplib::DataSink& sink, const std::string& chosen, std::uint64_t& seen);
+    /// Server-sent events: the shortest interval between two, and the event for a snapshot; empty
+    /// if it has nothing new.
+    struct Events
+    {
+        milliseconds period;
+        std::function<std::string(const Snapshot&)> event;
+    };
+    void send_events(httplib::Response& response, const Events& events);
+    bool send_next(httplib::DataSink& sink, const Events& events, std::uint64_t& seen);
+    void send_states_live(const httplib::Request& request, httplib::Response& response);
+    void send_feed(const httplib::Request& request, httplib::Response& response);
     /// Builds the bytes of an answer about one model of a refinement state. `is_whole` is true if
     /// the state has all pages of the controller.
     using Build = std::function<Result<std::string, Refusal>(
@@ -150,6 +162,10 @@ void WebServer::Inside::declare_answers()
     }
     // Browsers request the icon without a link to it.
     server.Get("/favicon.ico", [](const Request&, Response& response) { response.status = 204; });
+    if (!parts.pages.empty())
+    {
+        server.set_mount_point("/pages", parts.pages);
+    }
     for (const Library& library : kLibraries)
     {
         server.Get(library.url, [this, &library](const Request&, Response& response)
@@ -168,14 +184,22 @@ void WebServer::Inside::declare_answers()
                                         web::kMetricsType);
                });
     server.Get("/events", [this](const Request& request, Response& response)
-               { send_events(request, response); });
+               { send_states_live(request, response); });
+    server.Get("/feed", [this](const Request& request, Response& response)
+               { send_feed(request, response); });
     server.Get("/front",
                [this](const Request& request, Response& response)
                {
                    send_built(
                        request, response, "faces",
                        [](KnownModel& model, const RefinementStateModel& front, bool is_whole)
-                       { return with_cut(model, front, is_whole, &cut_bytes); });
+                       {
+                           const auto edits = model.edits();
+                           return with_cut(model, front, is_whole,
+                                           [&edits](const DecodedModel& decoded,
+                                                    std::span<const RefinementStatePage> pages)
+                                           { return cut_bytes(decoded, pages, edits.get()); });
+                       });
                });
     server.Get("/loaded",
                [this](const Request& request, Response& response)
@@ -250,7 +274,47 @@ void WebServer::Inside::send_states(const httplib::Request& request,
     response.set_content(states + "]", "application/json");
 }
 
-void WebServer::Inside::send_events(const httplib::Request& request, httplib::Response& response)
+/// Sends the whole newest state at each change.
+void WebServer::Inside::send_states_live(const httplib::Request& request,
+                                         httplib::Response& response)
+{
+    const std::string chosen = request.get_param_value("controller");
+    send_events(response, {kEventPeriod, [this, chosen](const Snapshot& news) {
+                               return fmt::format("data: {}\n\n", state_json(news, parts.shelf,
+                                                                             chosen, parts.domain));
+                           }});
+}
+
+/// Sends each new state of one controller: that of an identity or name, or the first one.
+void WebServer::Inside::send_feed(const httplib::Request& request, httplib::Response& response)
+{
+    if (parts.films != nullptr)
+    {
+        answer(response, 404, "/feed has live controllers only");
+        return;
+    }
+    const auto event = [chosen = request.get_param_value("controller"),
+                        last = std::optional<std::pair<dds::ControllerId, std::uint64_t>>()](
+                           const Snapshot& news) mutable
+    {
+        const auto found = std::ranges::find_if(news.controllers,
+                                                [&](const LiveController& each) {
+                                                    return chosen.empty() ||
+                                                           each.told.name == chosen ||
+                                                           id_text(each.told.id) == chosen;
+                                                });
+        if (found == news.controllers.end() ||
+            last == std::pair(found->told.id, found->told.serial))
+        {
+            return std::string();
+        }
+        last = std::pair(found->told.id, found->told.serial);
+        return fmt::format("data: {}\n\n", feed_json(*found));
+    };
+    send_events(response, {milliseconds(0), event});
+}
+
+void WebServer::Inside::send_events(httplib::Response& response, const Events& events)
 {
     if (viewers.fetch_add(1) >= kViewersMax)
     {
@@ -259,37 +323,39 @@ void WebServer::Inside::send_events(const httplib::Request& request, httplib::Re
         answer(response, 503, fmt::format("{} viewers are connected; close one", kViewersMax));
         return;
     }
-    const std::string chosen = request.get_param_value("controller");
     response.set_chunked_content_provider(
         "text/event-stream",
-        [this, chosen, seen = std::uint64_t{0}](std::size_t, httplib::DataSink& sink) mutable
-        { return send_next(sink, chosen, seen); },
+        [this, events, seen = std::uint64_t{0}](std::size_t, httplib::DataSink& sink) mutable
+        { return send_next(sink, events, seen); },
         [this](bool) { viewers.fetch_sub(1); });
 }
 
-/// Waits for news and sends one event with the whole newest state, so that a slow viewer skips
-/// states and gets no old ones. `seen` is the serial of the last state sent.
-bool WebServer::Inside::send_next(httplib::DataSink& sink, const std::string& chosen,
+/// Waits for news and sends one event for the newest state, so that a slow viewer skips states and
+/// gets no old ones. `seen` is the serial of the last snapshot.
+bool WebServer::Inside::send_next(httplib::DataSink& sink, const Events& events,
                                   std::uint64_t& seen)
 {
     const auto start = Clock::now();
-    std::shared_ptr<const Snapshot> news;
-    do
+    std::string event;
+    while (event.empty())
     {
-        news = parts.live.wait_newer(seen, kLook);
+        std::shared_ptr<const Snapshot> news = parts.live.wait_newer(seen, kLook);
         if (ends.load())
         {
             sink.done();
             return true;
         }
-    } while (news->serial <= seen && Clock::now() - start < kHeartbeat);
-    std::string event = ": no news\n\n";
-    if (news->serial > seen)
-    {
-        std::this_thread::sleep_until(start + kEventPeriod);
-        news = parts.live.newest();
-        seen = news->serial;
-        event = fmt::format("data: {}\n\n", state_json(*news, parts.shelf, chosen, parts.domain));
+        if (news->serial > seen)
+        {
+            std::this_thread::sleep_until(start + events.period);
+            news = parts.live.newest();
+            seen = news->serial;
+            event = events.event(*news);
+        }
+        if (event.empty() && Clock::now() - start >= kHeartbeat)
+        {
+            event = ": no news\n\n";
+        }
     }
     return sink.write(event.data(), event.size());
 }
@@ -326,8 +392,8 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
     {
         chunks = (chunks ^ chunk.value) * 0x0000'0100'0000'01B3U;
     }
-    const std::string name =
-        fmt::format("{} {} {:016x} {:016x}", what, hash_text(*hash), cut_id(front.pages), chunks);
+    const std::string name = fmt::format("{} {} {:016x} {:016x} {}", what, hash_text(*hash),
+                                         cut_id(front.pages), chunks, model->edit_revision());
     const auto bytes =
         built(name, [&] { return build(*model, front, seen->front.slots_left_out == 0); });
     if (!bytes)
@@ -369,6 +435,11 @@ WebServer::Inside::built(const std::string& name,
 
 Result<std::unique_ptr<WebServer>, Refusal> WebServer::start(const Parts& parts, std::uint16_t port)
 {
+    std::error_code unknown;
+    if (!parts.pages.empty() && !std::filesystem::is_directory(parts.pages, unknown))
+    {
+        return Refusal{fmt::format("--pages: '{}' is no folder", printable(parts.pages.string()))};
+    }
     auto inside = std::make_unique<Inside>(parts);
     if (auto refusal = inside->read_libraries())
     {

@@ -14,8 +14,8 @@
 namespace tactus::view
 {
 
-/// Serves the page and its data on this machine's loopback interface (docs/view.md). No request can
-/// change a controller.
+/// Serves the page and its data on this machine's loopback interface (docs/view.md, docs/feed.md).
+/// No request can change a controller.
 class WebServer
 {
 public:
@@ -31,6 +31,7 @@ public:
         std::uint32_t domain{0};         ///< Number of the DDS domain that the page shows.
         std::filesystem::path libraries; ///< Folder with three and dygraphs.
         const Films* films{nullptr};     ///< Films in place of live data; null: live data.
+        std::filesystem::path pages{};   ///< Folder of the user's pages; empty: none.
     };
 
     /// Listens on 127.0.0.1 until it is destroyed, which takes about 100 ms. The objects in `parts`

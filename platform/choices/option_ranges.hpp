@@ -28,6 +28,7 @@ inline constexpr OptionRange<double> kDurationRange_s{0.1, 86'400.0};
 inline constexpr OptionRange<double> kPoolRange_mib{0.25, 4'096.0};
 inline constexpr OptionRange<double> kCacheRange_mib{0.05, 4'096.0};
 inline constexpr OptionRange<std::uint32_t> kSplitsRange{1, kMaxSplitsPerFrame};
+inline constexpr OptionRange<std::uint32_t> kEditFacesRange{0, kMaxAddedFaces};
 inline constexpr OptionRange<double> kFrameBudgetRange_us{1e-3 * WorkBudget::kLeast, 10'000.0};
 inline constexpr OptionRange<double> kStiffnessRange_n_per_m{1.0, kStiffest_n_per_m};
 inline constexpr OptionRange<double> kAngularStiffnessRange_nm_per_rad{kSoftest_nm_per_rad,

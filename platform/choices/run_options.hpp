@@ -48,6 +48,8 @@ struct ToolOptions
     std::optional<FixtureChoice> fixture;
     DeviceChoice device;
     OperatorChoice simulated; ///< Operator of a simulated device.
+    /// Greatest volume in a second that the tool carves (BurrLaw); 0: it edits no models.
+    double carve_rate_m3_per_s{0.0};
     /// External force of a program, borrowed; null without one, and with a fixture.
     ExternalForceSource* external_force{nullptr};
 
@@ -102,7 +104,9 @@ struct Options
     std::string replay_path;
     std::vector<std::string> export_paths; ///< Files of an export of the replay, for other tools.
     double pool_mib{2.0};
-    double cache_mib{0.0};                 ///< Size of the cache; 0: the usual share of the pool.
+    double cache_mib{0.0}; ///< Size of the cache; 0: the usual share of the pool.
+    /// Room of each editable model for faces that edits add; none: as large as the server's.
+    std::optional<std::uint32_t> edit_faces;
     std::uint32_t splits{64};              ///< Most splits, and most merges, in a frame.
     std::optional<double> frame_budget_us; ///< Time budget of a frame; none: half of the period.
     bool static_when_it_fits{true};

@@ -3,6 +3,8 @@
 #include "platform/choices/tool_words.hpp"
 
 #include "platform/choices/device_limits_text.hpp"
+#include "platform/loop/burr.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
@@ -68,6 +70,26 @@ std::string set_tool_frame(const std::string& text, ToolOptions& tool)
     return fault.empty() && (kind == DeviceKind::simulated || kind == DeviceKind::replay)
                ? "a simulated or recorded hand is in the world already"
                : fault;
+}
+
+std::string set_tool_edit(const std::string& text, ToolOptions& tool)
+{
+    static constexpr NumberRange kRates[] = {
+        {kBurrRateMin_mm3_per_s, kBurrRateMax_mm3_per_s, "mm^3/s"}};
+    const auto numbers = read_numbers(text, {"carve:RATE", kRates});
+    if (!numbers)
+    {
+        return numbers.error().text;
+    }
+    tool.carve_rate_m3_per_s = 1e-9 * numbers.value().front();
+    const bool is_hull = tool.shape && !tool.shape->hull_file.empty();
+    const bool can_cut =
+        !tool.shape || (is_hull ? tool.shape->radius_m == 0.0
+                                : burr_shape(tool.shape->core, tool.shape->radius_m).has_value());
+    return can_cut ? ""
+                   : fmt::format("the tool '{}' can't carve; use a sphere, a capsule, or a box "
+                                 "or hull without R",
+                                 printable(tool.shape->words));
 }
 
 std::string set_tool_motion(const std::string& text, ToolOptions& tool)

@@ -20,6 +20,7 @@ namespace tactus::hrtc
 [[nodiscard]] std::string set_tool_device(const std::string& text, ToolOptions& tool);
 [[nodiscard]] std::string set_tool_limits(const std::string& text, ToolOptions& tool);
 [[nodiscard]] std::string set_tool_frame(const std::string& text, ToolOptions& tool);
+[[nodiscard]] std::string set_tool_edit(const std::string& text, ToolOptions& tool);
 [[nodiscard]] std::string set_tool_motion(const std::string& text, ToolOptions& tool);
 
 } // namespace tactus::hrtc

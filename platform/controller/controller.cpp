@@ -229,10 +229,19 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     const auto cache = static_cast<std::size_t>(options.cache_mib * kBytesPerMib);
     const std::size_t most = options.pool_bytes() - sizeof(Frame);
     std::vector<ModelCapacities> capacities(models_.size());
+    std::vector<std::uint32_t> edit_faces;
+    for (std::size_t i = 0; i < models_.size(); ++i)
+    {
+        // A model of a file, or of a server without edits, gets none.
+        const std::uint32_t room = models_[i].edit_room;
+        edit_faces.push_back(room > 0 ? options.edit_faces.value_or(room) : 0);
+        capacities[i].edit_faces = edit_faces.back();
+    }
     const bool fits = try_plan_pools(setup_, headers_, most, cache, capacities);
     if (!fits && !try_plan_as_streamed_models(options, most, cache))
     {
-        const std::size_t least = least_pool_bytes(setup_, headers_, cache) + sizeof(Frame);
+        const std::size_t least =
+            least_pool_bytes(setup_, headers_, cache, edit_faces) + sizeof(Frame);
         return Refusal{
             fmt::format("--pool-mib: {} MiB is too small for {}; at least {:.2f} MiB is needed{}",
                         options.pool_mib, counted(models_.size(), "model"),

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/controller/cut_sender.hpp"
 #include "platform/controller/recorder.hpp"
 #include "platform/controller/trace_file.hpp"
 #include "platform/loop/run_statistics.hpp"
@@ -44,6 +45,7 @@ struct FinishedRun
     std::vector<PoseUse> pose_uses{}; ///< Use of poses, one entry an object; empty without DDS.
     /// Counts of poses, one entry a model; empty if poses aren't followed.
     std::vector<dds::PoseCounts> pose_counts{};
+    std::optional<CutCounts> cuts{};               ///< Edit requests of tools; none without --edit.
     SceneNewsCounts scene_news{};                  ///< Counts of the changes of a server's scene.
     std::vector<dds::PeerRefusals> refused{};      ///< Refused messages of other participants.
     std::vector<dds::ServerEvent> server_events{}; ///< Events of the servers; empty for files.

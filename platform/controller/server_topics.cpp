@@ -3,6 +3,8 @@
 #include "platform/controller/server_topics.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "transport/base/printable.hpp"
+#include "transport/telemetry_from_frame.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -10,10 +12,33 @@
 namespace tactus::hrtc
 {
 
+namespace
+{
+
+/// Reader of the edits of the models with a room for them; null without any.
+std::unique_ptr<dds::EditReader> edit_reader(const dds::DdsClient& client,
+                                             const Controller& controller, Log log)
+{
+    std::vector<dds::EditReader::Model> models;
+    for (std::size_t i = 0; i < controller.models().size(); ++i)
+    {
+        const ServedModel& model = controller.models()[i];
+        models.push_back({model.name, model.hash, ModelHeader::parse(model.header).value(),
+                          controller.setup().models[i].capacities.edit_faces});
+    }
+    const bool has_room =
+        std::ranges::any_of(models, [](const auto& model) { return model.room > 0; });
+    return has_room ? std::make_unique<dds::EditReader>(client.domain(), client.catalogue(),
+                                                        std::move(models), std::move(log))
+                    : nullptr;
+}
+
+} // namespace
+
 Result<std::unique_ptr<ServerTopics>, Refusal>
 ServerTopics::create(dds::DdsClient& client, const Controller& controller,
                      std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
-                     bool shows_refinement_state)
+                     bool shows_refinement_state, const Log& log)
 {
     std::unique_ptr<ServerTopics> topics(
         new ServerTopics(client, controller, authorities, std::move(keeper)));
@@ -31,6 +56,7 @@ ServerTopics::create(dds::DdsClient& client, const Controller& controller,
         return telemetry.error();
     }
     topics->telemetry_ = std::move(telemetry).value();
+    topics->edits_ = edit_reader(client, controller, log);
     if (shows_refinement_state)
     {
         auto front = RefinementStateSender::create(client, controller);
@@ -52,13 +78,19 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
     , keeper_(std::move(keeper))
     , seen_(controller.models().size())
 {
+    for (const ServedModel& model : controller.models())
+    {
+        origins_m_.push_back(ModelHeader::parse(model.header).value().origin_m());
+    }
 }
 
-void ServerTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap,
+void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
                            RefinementStateTap* front, MonotonicTime now,
                            SceneKeeper::NameSink names)
 {
     tap_ = &tap;
+    TACTUS_ASSERT(edits != nullptr || edits_ == nullptr);
+    edit_mailbox_ = edits;
     if (front_ != nullptr)
     {
         TACTUS_ASSERT(front != nullptr);
@@ -66,8 +98,24 @@ void ServerTopics::connect(SceneMailbox& mailbox, const TelemetryTap& tap,
     }
     if (keeper_ != nullptr)
     {
-        keeper_->connect(mailbox, now, std::move(names));
+        keeper_->connect(mailbox, now,
+                         [this, names = std::move(names)](std::uint32_t number,
+                                                          std::uint32_t generation,
+                                                          const std::string& name)
+                         {
+                             name_object(number, name);
+                             if (names)
+                             {
+                                 names(number, generation, name);
+                             }
+                         });
     }
+}
+
+void ServerTopics::add_cuts(std::unique_ptr<CutSender> cuts) noexcept
+{
+    TACTUS_ASSERT(edits_ != nullptr);
+    cuts_ = std::move(cuts);
 }
 
 void ServerTopics::tell_begins_inside(std::size_t tool) noexcept
@@ -88,10 +136,24 @@ void ServerTopics::step(MonotonicTime now)
     {
         keeper_->step(now);
     }
+    if (edits_ != nullptr)
+    {
+        pass_edits();
+    }
+    if (cuts_ != nullptr)
+    {
+        cuts_->step(*edits_, [this](std::size_t model) { return server_of(model); });
+    }
     if (now - last_sent_ >= kTelemetryPeriod)
     {
         last_sent_ = now;
+        is_renewed_ = false;
         send_telemetry(now);
+    }
+    else if (!is_renewed_ && now - last_sent_ >= kTelemetryPeriod - kRenewal)
+    {
+        is_renewed_ = true;
+        renew_objects(false);
     }
     if (front_ != nullptr)
     {
@@ -125,6 +187,47 @@ std::vector<dds::ServerEvent> ServerTopics::server_events() const
     return events;
 }
 
+std::vector<dds::EditReader::Counts> ServerTopics::edit_counts() const
+{
+    std::vector<dds::EditReader::Counts> counts;
+    for (std::size_t i = 0; edits_ != nullptr && i < controller_.models().size(); ++i)
+    {
+        counts.push_back(edits_->counts(i));
+    }
+    return counts;
+}
+
+std::optional<CutCounts> ServerTopics::cut_counts() const
+{
+    return cuts_ != nullptr ? std::optional(cuts_->counts()) : std::nullopt;
+}
+
+/// Epoch of the server with authority over the model: that of the scene, or of the model; 0: none.
+std::uint64_t ServerTopics::server_of(std::size_t model) const
+{
+    return authorities_.empty() ? 0
+                                : authorities_[std::min(model, authorities_.size() - 1)].server();
+}
+
+/// Passes edits to the mailbox. Edits without room there are offered again in the next step.
+void ServerTopics::pass_edits()
+{
+    for (std::size_t i = 0; i < controller_.models().size(); ++i)
+    {
+        edits_->follow(i, server_of(i));
+    }
+    edits_->poll();
+    for (std::uint32_t i = 0; i < controller_.models().size(); ++i)
+    {
+        const EditContent* edit = edits_->next(i);
+        while (edit != nullptr && edit_mailbox_->try_put(ModelId{i}, *edit))
+        {
+            edits_->pop(i);
+            edit = edits_->next(i);
+        }
+    }
+}
+
 void ServerTopics::send_telemetry(MonotonicTime now)
 {
     Telemetry telemetry;
@@ -138,9 +241,9 @@ void ServerTopics::send_telemetry(MonotonicTime now)
     }
     for (std::size_t i = 0; i < telemetry.pair_count; ++i)
     {
-        name_object(telemetry.pairs[i]);
+        name_server(telemetry.pairs[i].server_epoch, telemetry.pairs[i].object);
     }
-    telemetry_->write(telemetry);
+    telemetry_->write(telemetry, take_objects());
 }
 
 void ServerTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry,
@@ -163,15 +266,65 @@ void ServerTopics::add_transport_side(std::size_t model, ModelTelemetry& telemet
     }
 }
 
+/// Asks the haptic thread for new poses of the objects if there is a reader.
+void ServerTopics::renew_objects(bool was_sent)
+{
+    const bool is_out = tap_->objects().take() != nullptr;
+    if (is_out && telemetry_->is_watched())
+    {
+        tap_->objects().give_back(was_sent);
+        has_new_objects_ = true;
+    }
+}
+
+/// Newest poses of the objects; none without a reader.
+ObjectsTelemetry ServerTopics::take_objects()
+{
+    ObjectsTelemetry shown;
+    const ObjectsCopy* copy = tap_->objects().take();
+    has_new_objects_ = has_new_objects_ && telemetry_->is_watched();
+    const bool is_new = copy != nullptr && has_new_objects_;
+    if (is_new)
+    {
+        shown.sweep_begin = copy->sweep_begin;
+        shown.sweep_end = copy->sweep_end;
+        const std::lock_guard lock(names_mutex_);
+        for (const ObjectsCopy::Object& object : copy->objects)
+        {
+            const ServedModel& model = controller_.models()[object.model];
+            const auto name = names_.find(object.number);
+            Similarity place = object.pose;
+            place.translation_m = place.local_to_world(-origins_m_[object.model]);
+            ObjectTelemetry& told = shown.objects.emplace_back(
+                ObjectTelemetry{0, object.number, object.number,
+                                printable(name != names_.end() ? name->second : model.name),
+                                model.hash, pose_of(place)});
+            name_server(told.server_epoch, told.object);
+        }
+    }
+    renew_objects(is_new);
+    return shown;
+}
+
+void ServerTopics::name_object(std::uint32_t number, const std::string& name)
+{
+    const std::lock_guard lock(names_mutex_);
+    if (name.empty())
+    {
+        names_.erase(number); // The number may be that of a removed object.
+        return;
+    }
+    names_[number] = name;
+}
+
 /// Replaces the controller's object number by the server's epoch and number, if a server shows the
 /// object.
-void ServerTopics::name_object(PairTelemetry& pair) const
+void ServerTopics::name_server(std::uint64_t& server_epoch, std::uint32_t& object) const
 {
-    const auto shown = keeper_ != nullptr ? keeper_->shown_as(pair.object) : std::nullopt;
-    if (shown)
+    if (const auto shown = keeper_ != nullptr ? keeper_->shown_as(object) : std::nullopt)
     {
-        pair.server_epoch = shown->server_epoch;
-        pair.object = shown->number;
+        server_epoch = shown->server_epoch;
+        object = shown->number;
     }
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "platform/controller/controller.hpp"
+#include "platform/controller/cut_sender.hpp"
 #include "platform/controller/refinement_state_sender.hpp"
+#include "platform/loop/edit_mailbox.hpp"
 #include "platform/loop/scene_mailbox.hpp"
 #include "platform/loop/telemetry_tap.hpp"
 #include "platform/machine/time.hpp"
@@ -11,11 +13,16 @@
 #include "transport/base/refusal.hpp"
 #include "transport/dds/authority.hpp"
 #include "transport/dds/dds_client.hpp"
+#include "transport/dds/edit_reader.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tactus::hrtc
@@ -29,22 +36,35 @@ class ServerTopics
 public:
     /// Period in which the controller's state is sent.
     static constexpr Duration kTelemetryPeriod = milliseconds(10);
+    /// Time before a sample at which the haptic thread is asked for new poses of objects.
+    static constexpr Duration kRenewal = milliseconds(2);
 
     /// `client`, `controller` and `authorities` must outlive the topics. Without `keeper`, the
     /// poses and scenes of servers are ignored. The refinement state is sent if
-    /// `shows_refinement_state` is set.
+    /// `shows_refinement_state` is set. `log` gets, at a limited rate, a line for each refused
+    /// edit.
     [[nodiscard]] static Result<std::unique_ptr<ServerTopics>, Refusal>
     create(dds::DdsClient& client, const Controller& controller,
            std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
-           bool shows_refinement_state);
+           bool shows_refinement_state, const Log& log);
 
     /// Connects the topics to the mailbox and taps of the haptic thread, which must live as long as
     /// the run. `front` may be null if shows_refinement_state() is false. `names` receives the
-    /// names of objects added later, and may be empty.
-    void connect(SceneMailbox& mailbox, const TelemetryTap& tap, RefinementStateTap* front,
-                 MonotonicTime now, SceneKeeper::NameSink names = {});
+    /// names of objects added later, and may be empty. `edits` may be null if has_edits() is false.
+    void connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
+                 RefinementStateTap* front, MonotonicTime now, SceneKeeper::NameSink names = {});
     /// Reports to viewers that the tool began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept;
+    /// Names an object for viewers; others have the names of their models. Any thread but the
+    /// haptic one.
+    void name_object(std::uint32_t number, const std::string& name);
+    /// Sends the edit requests of the tools that carve; has_edits() must be true (asserted). Call
+    /// it before the run.
+    void add_cuts(std::unique_ptr<CutSender> cuts) noexcept;
+    /// Tap of the tools that carve; null without any.
+    [[nodiscard]] CutTap* cut_tap() noexcept { return cuts_ != nullptr ? &cuts_->tap() : nullptr; }
+    /// True if a model has room for faces that edits add.
+    [[nodiscard]] bool has_edits() const noexcept { return edits_ != nullptr; }
     [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
 
     /// Passes poses to the mailbox, and publishes telemetry and refinement state when their periods
@@ -55,6 +75,10 @@ public:
     [[nodiscard]] std::vector<dds::PoseCounts> pose_counts() const;
     /// Counts of the changes of the servers' objects; zero if poses aren't followed.
     [[nodiscard]] SceneNewsCounts scene_news() const;
+    /// Counts of edits, one entry a model; empty if no model can be edited. Not during a step.
+    [[nodiscard]] std::vector<dds::EditReader::Counts> edit_counts() const;
+    /// Counts of the edit requests of the tools that carve; none without any. Not during a step.
+    [[nodiscard]] std::optional<CutCounts> cut_counts() const;
     /// Refused messages of other participants of the domain.
     [[nodiscard]] std::vector<dds::PeerRefusals> refused() const
     {
@@ -80,17 +104,30 @@ private:
     ServerTopics(const dds::DdsClient& client, const Controller& controller,
                  std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper);
 
+    [[nodiscard]] std::uint64_t server_of(std::size_t model) const;
+    void pass_edits();
     void send_telemetry(MonotonicTime now);
     void add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now);
-    void name_object(PairTelemetry& pair) const;
+    void name_server(std::uint64_t& server_epoch, std::uint32_t& object) const;
+    void renew_objects(bool was_sent);
+    [[nodiscard]] ObjectsTelemetry take_objects();
 
     const dds::DdsClient& client_;
     const Controller& controller_;
     std::span<dds::Authority> authorities_;
-    std::unique_ptr<SceneKeeper> keeper_; ///< Null if poses aren't followed.
+    std::unique_ptr<SceneKeeper> keeper_;    ///< Null if poses aren't followed.
+    std::unique_ptr<dds::EditReader> edits_; ///< Null if no model can be edited.
+    std::unique_ptr<CutSender> cuts_;        ///< Null if no tool carves.
+    EditMailbox* edit_mailbox_{nullptr};
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
     std::unique_ptr<RefinementStateSender> front_; ///< Null if no viewer gets it.
-    const TelemetryTap* tap_{nullptr};
+    TelemetryTap* tap_{nullptr};
+    /// True if the copy of the objects' poses was made while there was a reader.
+    bool has_new_objects_{false};
+    bool is_renewed_{false};      ///< True if the copy was renewed since the last sample.
+    std::vector<Vec3> origins_m_; ///< Origin of each model's frame in its source mesh.
+    std::mutex names_mutex_;      ///< Guards names_.
+    std::map<std::uint32_t, std::string> names_; ///< Names of objects, by their numbers.
     MonotonicTime last_sent_{};
     std::vector<Seen> seen_;
 };

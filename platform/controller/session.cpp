@@ -359,14 +359,39 @@ std::optional<Refusal> Session::assemble()
                                                    controller_->scene_parts(), scene_, log_line);
         }
         auto topics = ServerTopics::create(*client_, *controller_, authorities_, std::move(keeper),
-                                           options_.shows_refinement_state);
+                                           options_.shows_refinement_state, log_line);
         if (!topics)
         {
             return failure(topics.error().text);
         }
         topics_ = std::move(topics).value();
+        auto cuts = CutSender::create(client_->domain(), *controller_, options_);
+        if (!cuts)
+        {
+            return failure(cuts.error().text);
+        }
+        if (cuts.value() != nullptr && !topics_->has_edits())
+        {
+            return failure("--edit: no model can be edited; start its server with --edits");
+        }
+        if (cuts.value() != nullptr)
+        {
+            topics_->add_cuts(std::move(cuts).value());
+        }
+        for (std::uint32_t i = 0; i < options_.objects.size(); ++i)
+        {
+            topics_->name_object(i, options_.objects[i].name);
+        }
     }
     return std::nullopt;
+}
+
+void Session::name_object(std::uint32_t number, const std::string& name)
+{
+    if (topics_ != nullptr)
+    {
+        topics_->name_object(number, name);
+    }
 }
 
 std::optional<Refusal> Session::start(ProgramScene* program, HandTap* hands)

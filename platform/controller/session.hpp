@@ -49,6 +49,8 @@ public:
     /// be null; they must outlive the session. Returns the reason if it can't start. Call it once.
     [[nodiscard]] std::optional<Refusal> start(ProgramScene* program = nullptr,
                                                HandTap* hands = nullptr);
+    /// Names an object for viewers. Any thread but the haptic one, before the session is destroyed.
+    void name_object(std::uint32_t number, const std::string& name);
     /// The run after start() and before finish().
     [[nodiscard]] SessionRun& running() noexcept { return *run_; }
     /// Ends the run after SessionRun::wait(), or between two steps, and returns its results.

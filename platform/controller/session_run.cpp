@@ -140,8 +140,8 @@ ServerTopics* SessionRun::connected_topics()
                 [recorder](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { recorder->name_object(number, generation, name); };
         }
-        parts_.topics->connect(mailbox_, telemetry_, make_front(), time_.clock().now(),
-                               std::move(names));
+        parts_.topics->connect(mailbox_, make_edit_mailbox(), telemetry_, make_front(),
+                               time_.clock().now(), std::move(names));
     }
     return parts_.topics;
 }
@@ -153,6 +153,16 @@ ProgramScene* SessionRun::connected_program()
         parts_.program->connect(mailbox_);
     }
     return parts_.program;
+}
+
+/// Mailbox of edits; null if no model can be edited.
+EditMailbox* SessionRun::make_edit_mailbox()
+{
+    if (parts_.topics->has_edits())
+    {
+        edit_mailbox_ = std::make_unique<EditMailbox>();
+    }
+    return edit_mailbox_.get();
 }
 
 /// Tap of the refinement state; null if no viewer gets it.
@@ -188,10 +198,12 @@ LoopParts SessionRun::loop_parts()
             .servers_gone = &transport_.servers_gone(),
             .starved = &transport_.starved(),
             .scene_mailbox = has_topics || parts_.program != nullptr ? &mailbox_ : nullptr,
+            .edit_mailbox = edit_mailbox_.get(),
             .telemetry = has_topics ? &telemetry_ : nullptr,
             .front = front_ ? &*front_ : nullptr,
             .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr,
-            .hands = parts_.hands};
+            .hands = parts_.hands,
+            .cuts = has_topics ? parts_.topics->cut_tap() : nullptr};
 }
 
 std::optional<Refusal> SessionRun::start()
@@ -593,6 +605,7 @@ void SessionRun::note_topics()
         done_.pose_uses.assign(mailbox_.uses().begin(), mailbox_.uses().end());
         done_.pose_counts = parts_.topics->pose_counts();
         done_.scene_news = parts_.topics->scene_news();
+        done_.cuts = parts_.topics->cut_counts();
         done_.refused = parts_.topics->refused();
         done_.server_events = parts_.topics->server_events();
         done_.telemetry_sent = parts_.topics->telemetry_sent();

@@ -14,6 +14,7 @@
 #include "platform/controller/transport_thread.hpp"
 #include "platform/loop/assertion_brake.hpp"
 #include "platform/loop/budget_governor.hpp"
+#include "platform/loop/edit_mailbox.hpp"
 #include "platform/loop/haptic_loop.hpp"
 #include "platform/loop/loop_time.hpp"
 #include "platform/loop/refinement_state_tap.hpp"
@@ -26,6 +27,7 @@
 #include "transport/log.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +82,7 @@ public:
 private:
     [[nodiscard]] ServerTopics* connected_topics();
     [[nodiscard]] ProgramScene* connected_program();
+    [[nodiscard]] EditMailbox* make_edit_mailbox();
     [[nodiscard]] RefinementStateTap* make_front();
     [[nodiscard]] LoopParts loop_parts();
     [[nodiscard]] std::optional<Refusal> start_supervisor();
@@ -105,6 +108,7 @@ private:
     PosixPeriodicTimer alarm_; ///< Timer of the supervisor.
     std::optional<BudgetGovernor> governor_;
     SceneMailbox mailbox_;
+    std::unique_ptr<EditMailbox> edit_mailbox_; ///< Null if no model can be edited.
     TelemetryTap telemetry_;
     /// Tap of the refinement state; none if no viewer gets it.
     std::optional<RefinementStateTap> front_;

@@ -141,7 +141,7 @@ LoopCounts HandTap::counts() const noexcept
     LoopCounts counts;
     while (has_frame_.load(std::memory_order_relaxed) && !counts_.try_read(counts))
     {
-        // As in state().
+        // The writer lost its processor; see state().
     }
     return counts;
 }

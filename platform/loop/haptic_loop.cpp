@@ -93,6 +93,10 @@ void HapticLoop::run_period() noexcept
     measures_.outside += last_end_ - answered;
     const ThreadUsage now = thread_usage();
     record(input, output);
+    if (parts_.edit_mailbox != nullptr)
+    {
+        parts_.edit_mailbox->done();
+    }
     measures_.frame = last_end_ - start;
     measures_.cpu = now.cpu_time - cpu_before;
     measures_.lateness_of_end = last_end_ - measures_.cycle.deadline;
@@ -314,13 +318,17 @@ std::span<const Vec3> HapticLoop::first_places_m() const noexcept
                                                        : std::span<const Vec3>();
 }
 
-/// Input of the frame. Network data on the objects enters the frame here and nowhere else.
+/// Input of the frame. Network data on objects and models enters the frame here and nowhere else.
 FrameInput HapticLoop::read_scene(MonotonicTime now) noexcept
 {
-    FrameInput input{states_, {}, measures_.budgets, now.ns};
+    FrameInput input{states_, {}, measures_.budgets, now.ns, {}};
     if (parts_.scene_mailbox != nullptr)
     {
         input.changes = parts_.scene_mailbox->refresh(now, touches_.view());
+    }
+    if (parts_.edit_mailbox != nullptr)
+    {
+        input.edits = parts_.edit_mailbox->edits();
     }
     return input;
 }
@@ -329,12 +337,17 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
 {
     if (parts_.telemetry != nullptr)
     {
-        parts_.telemetry->show({start, states_, devices_, radii_m_, output}, statistics_);
+        parts_.telemetry->show(
+            {start, states_, devices_, radii_m_, output, parts_.frame->objects()}, statistics_);
     }
     if (parts_.front != nullptr)
     {
         parts_.front->show({frame_, start, *parts_.frame, output, forces_, measures_.budgets},
                            statistics_);
+    }
+    if (parts_.cuts != nullptr)
+    {
+        parts_.cuts->show({start.ns, output, forces_, radii_m_, parts_.frame->objects()});
     }
     if (parts_.hands != nullptr)
     {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "platform/loop/budget_governor.hpp"
+#include "platform/loop/cut_tap.hpp"
+#include "platform/loop/edit_mailbox.hpp"
 #include "platform/loop/hand_tap.hpp"
 #include "platform/loop/model_marks.hpp"
 #include "platform/loop/refinement_state_tap.hpp"
@@ -49,10 +51,12 @@ struct LoopParts
     const ModelMarks* servers_gone{nullptr}; ///< Models whose server is gone; may be null.
     const ModelMarks* starved{nullptr};      ///< Starved models; may be null.
     SceneMailbox* scene_mailbox{nullptr};    ///< Motion of the objects; may be null.
+    EditMailbox* edit_mailbox{nullptr};      ///< Edits of the models; may be null.
     TelemetryTap* telemetry{nullptr};        ///< Shows every frame; may be null.
     RefinementStateTap* front{nullptr};      ///< Shows the refinement state; may be null.
     TraceTap* trace{nullptr};                ///< Traces every frame's times; may be null.
     HandTap* hands{nullptr};                 ///< Shows the program its hands; may be null.
+    CutTap* cuts{nullptr};                   ///< Takes the contacts of tools that cut; may be null.
 };
 
 /// Work of the haptic thread. Every period it reads the devices, runs the frame, makes its forces

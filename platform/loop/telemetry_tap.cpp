@@ -44,6 +44,7 @@ void TelemetryTap::show(const ShownFrame& frame, const RunStatistics& statistics
     }
     show_pairs(frame);
     mailbox_.write(news_);
+    objects_.show(frame.objects, frame.output.pairs);
 }
 
 void TelemetryTap::show_pairs(const ShownFrame& frame) noexcept

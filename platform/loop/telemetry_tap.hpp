@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/loop/object_tap.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/machine/time.hpp"
 #include "rt_core/base/mailbox.hpp"
@@ -9,6 +10,7 @@
 #include "rt_core/records/device_record.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
+#include "rt_core/scene/object_table.hpp"
 #include "transport/telemetry.hpp"
 
 #include <span>
@@ -24,6 +26,7 @@ struct ShownFrame
     std::span<const DeviceRecord> devices; ///< Device records, one a tool.
     std::span<const double> radii_m;       ///< Tool radii, one a tool.
     const FrameOutput& output;
+    const ObjectTable& objects;
 };
 
 /// Passes every frame's telemetry through a mailbox; the haptic thread never waits for readers.
@@ -33,7 +36,7 @@ public:
     explicit TelemetryTap(Duration period) { news_.period_ns = period.ns; }
 
     /// Haptic thread, after the forces are written and the statistics updated. Allocates nothing;
-    /// about 0.6 us, and 0.2 us for each tool that touches several objects.
+    /// about 0.6 us, and 0.2 us for each tool that touches several objects; see also ObjectTap.
     void show(const ShownFrame& frame, const RunStatistics& statistics) noexcept;
 
     /// Any thread: copies the newest frame into `telemetry`. Before the first frame returns false
@@ -43,12 +46,15 @@ public:
     {
         return mailbox_.try_read(telemetry);
     }
+    /// Poses of the objects, for the transport thread.
+    [[nodiscard]] ObjectTap& objects() noexcept { return objects_; }
 
 private:
     void show_pairs(const ShownFrame& frame) noexcept;
 
     Telemetry news_; ///< Newest telemetry; haptic thread only.
     Mailbox<Telemetry> mailbox_;
+    ObjectTap objects_;
 };
 
 } // namespace tactus::hrtc

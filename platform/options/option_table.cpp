@@ -62,9 +62,10 @@ void declare_tools(CommandLine& line, RawOptions& raw)
                     "hrtc ball.spm --tool sphere:0.002 --device udp:48500");
     line.add_option("--tools", raw.tool_count,
                     "Number of tools. The n-th --tool, --tool-mass, --fixture, --device, "
-                    "--device-limits, --device-frame and --motion are for the n-th tool; the value "
-                    "none selects the default. In an option file, the n-th table [[tool]] has the "
-                    "keys shape, mass, fixture, device, device-limits, device-frame and motion "
+                    "--device-limits, --device-frame, --motion and --edit are for the n-th tool; "
+                    "the value none selects the default. In an option file, the n-th table "
+                    "[[tool]] has the keys shape, mass, fixture, edit, device, device-limits, "
+                    "device-frame and motion "
                     "[default: the number of tools with any of these, at least 1]")
         .integer_between(1U, kMaxTools);
     for (std::size_t i = 0; i < kToolOptions; ++i)
@@ -125,6 +126,11 @@ void declare_budgets(CommandLine& line, Options& options, RawOptions& raw)
             "--cache-mib", options.cache_mib,
             "Part of --pool-mib for pages of records, in MiB [default: about half of --pool-mib]")
         .number_between(kCacheRange_mib.low, kCacheRange_mib.high);
+    line.add_option("--edit-faces", options.edit_faces,
+                    "Room for faces that edits add, for each model that its server edits; part of "
+                    "--pool-mib, about 150 bytes each. 0: the model takes no edits [default: the "
+                    "server's room]")
+        .integer_between(kEditFacesRange.low, kEditFacesRange.high);
     line.add_option("--splits", options.splits,
                     "Maximum number of splits, and of merges, in a frame. With --frame-budget-us "
                     "the default is the largest value")

@@ -16,7 +16,7 @@ namespace tactus::hrtc
 {
 
 /// Number of options with one value for each tool.
-inline constexpr std::size_t kToolOptions = 7;
+inline constexpr std::size_t kToolOptions = 8;
 
 /// Texts of the command line that parse_options() parses further after CommandLine::parse().
 struct RawOptions

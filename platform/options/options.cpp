@@ -261,6 +261,17 @@ std::string check_shading(Options& options, const RawOptions& /*raw*/)
                : "";
 }
 
+/// Fault of --edit; empty if none. Called once the transport is known.
+std::string check_edits(const Options& options)
+{
+    return options.transport == TransportKind::file &&
+                   std::ranges::any_of(options.tools, [](const ToolOptions& tool)
+                                       { return tool.carve_rate_m3_per_s > 0.0; })
+               ? "--edit: only published models can be edited; publish the file with "
+                 "'spm_publish FILE --edits'"
+               : "";
+}
+
 bool has_device(const Options& options, DeviceKind kind)
 {
     return std::ranges::any_of(options.tools, [kind](const ToolOptions& tool)
@@ -494,6 +505,10 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     options.prediction = static_cast<Prediction>(
         std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
+    if (std::string fault = check_edits(options); !fault.empty())
+    {
+        return fault;
+    }
     const bool is_shown = line.is_given("--domain") && !options.virtual_time;
     options.is_watched = options.transport == TransportKind::dds || is_shown;
     if (line.is_given("--domain") && !options.is_watched)

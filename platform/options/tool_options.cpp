@@ -36,6 +36,12 @@ constexpr ToolOption kOptions[kToolOptions] = {
      "holds the device's gripper open by X, 0 to 1. Each form takes [,STIFFNESS in N/m, 1 to 3000 "
      "[,maximum FORCE in N, 0.01 to 100]], otherwise 100 N/m and 1 N [default: none]",
      set_tool_fixture},
+    {"edit", "--edit",
+     "Change of published models by the tool: carve:RATE removes material where the tool presses. "
+     "The volume in a second is 1000 mm^3 x force in N x speed in m/s, at most RATE in mm^3/s, "
+     "0.01 to 10000. The speed is that of the tool over the surface plus 0.05 m/s for its own "
+     "rotation. The models' server must permit it (spm_publish --edits) [default: none]",
+     set_tool_edit},
     {"device", "--device",
      "Device that moves the tool: sim[:CLASS], a simulated operator on a device of the class "
      "touch, omega or delta; udp[:[ADDRESS:]PORT], a driver of your own; dhd[:INDEX], a device of "

@@ -7,6 +7,8 @@
 #include "platform/recording/frame_encoder.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace tactus
 {
@@ -27,6 +29,37 @@ Budgets read_budgets(ByteReader& reader)
 }
 
 } // namespace
+
+void RecordedEdits::add(const SurfaceEdit& edit)
+{
+    Faces& faces = faces_.emplace_back();
+    faces.removed.assign(edit.removed.begin(), edit.removed.end());
+    faces.added.assign(edit.added.begin(), edit.added.end());
+    SurfaceEdit& own = edits_.emplace_back(edit);
+    own.removed = faces.removed;
+    own.added = faces.added;
+}
+
+void RecordedEdits::clear() noexcept
+{
+    edits_.clear();
+    faces_.clear();
+}
+
+RecordedEdits::RecordedEdits(const RecordedEdits& other)
+{
+    for (const SurfaceEdit& edit : other.edits_)
+    {
+        add(edit);
+    }
+}
+
+RecordedEdits& RecordedEdits::operator=(const RecordedEdits& other)
+{
+    RecordedEdits copy(other);
+    std::swap(*this, copy);
+    return *this;
+}
 
 FrameDecoder::FrameDecoder(const FrameShape& shape)
 {
@@ -53,10 +86,10 @@ const char* FrameDecoder::decode(ByteReader& reader)
 const char* FrameDecoder::decode_body(ByteReader& reader)
 {
     const auto flags = reader.read<std::uint8_t>();
-    if (flags > (kHasChanges | kHasBudgets | kHasNoHashes) ||
+    if (flags > (kHasChanges | kHasBudgets | kHasNoHashes | kHasEdits) ||
         (!has_begun_ && (flags & kHasBudgets) == 0))
     {
-        return "has flags that are not 0 to 7, or no budgets in the first frame";
+        return "has flags that are not 0 to 15, or no budgets in the first frame";
     }
     if (has_begun_ && !frame_.has_hashes && (flags & kHasNoHashes) == 0)
     {
@@ -73,6 +106,14 @@ const char* FrameDecoder::decode_body(ByteReader& reader)
     if ((flags & kHasChanges) != 0 && !decode_changes(reader))
     {
         return "does not have 1 to 64 changes of the scene, or has one of unknown kind";
+    }
+    frame_.edits.clear();
+    if ((flags & kHasEdits) != 0)
+    {
+        if (const char* fault = decode_edits(reader))
+        {
+            return fault;
+        }
     }
     if ((flags & kHasBudgets) != 0)
     {
@@ -137,6 +178,60 @@ const char* FrameDecoder::decode_queue(ByteReader& reader)
         }
     }
     return nullptr;
+}
+
+/// Reads the edits. The frame decides, as in the run, if they can be made.
+const char* FrameDecoder::decode_edits(ByteReader& reader)
+{
+    constexpr const char* kFault = "does not have 1 or 2 edits, or has one of an unknown model, of "
+                                   "more than 1024 faces or with a coordinate that is not finite";
+    bool is_sound = true;
+    const auto read_place = [&]
+    {
+        Vec3f place{};
+        for (float& coordinate : place)
+        {
+            coordinate = reader.read<float>();
+            is_sound = is_sound && std::isfinite(coordinate);
+        }
+        return place;
+    };
+    const auto edits = reader.read<std::uint8_t>();
+    if (edits < 1 || edits > kMaxEditsPerFrame)
+    {
+        return kFault;
+    }
+    for (std::uint32_t i = 0; i < edits; ++i)
+    {
+        SurfaceEdit edit;
+        edit.model = ModelId{reader.read<std::uint32_t>()};
+        edit.revision = reader.read<std::uint32_t>();
+        const std::uint32_t removed_count = reader.read<std::uint16_t>();
+        const std::uint32_t added_count = reader.read<std::uint16_t>();
+        if (edit.model.value >= frame_.state_hashes.size() || removed_count > kMaxEditFaces ||
+            added_count > kMaxEditFaces)
+        {
+            return kFault;
+        }
+        edit.removed_m.low = read_place();
+        edit.removed_m.high = read_place();
+        std::vector<FaceId> removed(removed_count);
+        std::vector<AddedFace> added(added_count);
+        for (FaceId& face : removed)
+        {
+            face = FaceId{reader.read<std::uint32_t>()};
+        }
+        for (AddedFace& face : added)
+        {
+            face.slot = reader.read<std::uint32_t>();
+            face.bucket = reader.read<std::uint32_t>();
+            std::ranges::generate(face.corners_m, read_place);
+        }
+        edit.removed = removed;
+        edit.added = added;
+        frame_.edits.add(edit);
+    }
+    return is_sound ? nullptr : kFault;
 }
 
 bool FrameDecoder::decode_tools(ByteReader& reader)

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tactus
@@ -22,12 +23,40 @@ struct FrameShape
     std::size_t models{0};
 };
 
+/// Edits of one frame, with their faces.
+class RecordedEdits
+{
+public:
+    RecordedEdits() = default;
+    RecordedEdits(const RecordedEdits& other);
+    RecordedEdits(RecordedEdits&&) = default;
+    RecordedEdits& operator=(const RecordedEdits& other);
+    RecordedEdits& operator=(RecordedEdits&&) = default;
+    ~RecordedEdits() = default;
+
+    /// Appends an edit and copies its faces.
+    void add(const SurfaceEdit& edit);
+    void clear() noexcept;
+    /// Edits in order; valid until a change, a copy or the end of this object.
+    [[nodiscard]] std::span<const SurfaceEdit> view() const noexcept { return edits_; }
+
+private:
+    struct Faces
+    {
+        std::vector<FaceId> removed;
+        std::vector<AddedFace> added;
+    };
+    std::vector<SurfaceEdit> edits_;
+    std::vector<Faces> faces_; ///< Faces of `edits_`, whose views stay valid when this grows.
+};
+
 struct RecordedFrame
 {
     std::int64_t now_ns{0};
     std::vector<ToolState> tools;
     std::vector<DeviceRecord> devices; ///< Records, one a tool.
     std::vector<SceneChange> changes;
+    RecordedEdits edits;
     Budgets budgets;
     std::uint32_t request_room{0};
     std::vector<QueueEvent> events; ///< Events that the frame took from the queues.
@@ -35,7 +64,10 @@ struct RecordedFrame
     std::vector<std::uint64_t> state_hashes; ///< State hash of each model after the frame.
     OutputHashes output;
 
-    [[nodiscard]] FrameInput input() const noexcept { return {tools, changes, budgets, now_ns}; }
+    [[nodiscard]] FrameInput input() const noexcept
+    {
+        return {tools, changes, budgets, now_ns, edits.view()};
+    }
 };
 
 /// Reads the frames of a FrameEncoder in the same order. One thread, not the haptic one: it
@@ -55,6 +87,7 @@ private:
     [[nodiscard]] const char* decode_queue(ByteReader& reader);
     [[nodiscard]] bool decode_tools(ByteReader& reader);
     [[nodiscard]] bool decode_changes(ByteReader& reader);
+    [[nodiscard]] const char* decode_edits(ByteReader& reader);
 
     RecordedFrame frame_;
     bool has_begun_{false};

@@ -40,6 +40,30 @@ void write_queue(FixedWriter& writer, const QueueTake& queues) noexcept
     }
 }
 
+void write_edit(FixedWriter& writer, const SurfaceEdit& edit) noexcept
+{
+    TACTUS_ASSERT(edit.removed.size() <= kMaxEditFaces);
+    TACTUS_ASSERT(edit.added.size() <= kMaxEditFaces);
+    const auto write_all = [&](const Vec3f& place)
+    { std::ranges::for_each(place, [&](float coordinate) { writer.write(coordinate); }); };
+    writer.write(edit.model.value);
+    writer.write(edit.revision);
+    writer.write(static_cast<std::uint16_t>(edit.removed.size()));
+    writer.write(static_cast<std::uint16_t>(edit.added.size()));
+    write_all(edit.removed_m.low);
+    write_all(edit.removed_m.high);
+    for (const FaceId face : edit.removed)
+    {
+        writer.write(face.value);
+    }
+    for (const AddedFace& face : edit.added)
+    {
+        writer.write(face.slot);
+        writer.write(face.bucket);
+        std::ranges::for_each(face.corners_m, write_all);
+    }
+}
+
 /// Copies `now` over `last`; true if they differed.
 bool try_update(std::span<const std::byte> now, std::span<std::byte> last) noexcept
 {
@@ -80,6 +104,7 @@ FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noe
     const auto& [input, queues, devices] = frame;
     TACTUS_ASSERT(devices.empty() || devices.size() == input.tools.size());
     TACTUS_ASSERT(input.changes.size() <= kMaxSceneChanges);
+    TACTUS_ASSERT(input.edits.size() <= kMaxEditsPerFrame);
     std::array<std::byte, kBudgetsBytes> coded_budgets;
     FixedWriter budget_writer(coded_budgets);
     write_budgets(budget_writer, input.budgets);
@@ -90,7 +115,8 @@ FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noe
 
     FixedWriter writer{std::span(bytes_).subspan(sizeof(std::uint32_t))};
     writer.write(static_cast<std::uint8_t>(flags | (has_changes ? kHasChanges : 0) |
-                                           (has_budgets ? kHasBudgets : 0)));
+                                           (has_budgets ? kHasBudgets : 0) |
+                                           (input.edits.empty() ? 0 : kHasEdits)));
     writer.write(input.now_ns);
     for (std::size_t i = 0; i < input.tools.size(); ++i)
     {
@@ -103,6 +129,14 @@ FixedWriter FrameEncoder::begin(const GivenFrame& frame, std::uint8_t flags) noe
     for (const SceneChange& change : input.changes)
     {
         write_change(writer, change);
+    }
+    if (!input.edits.empty())
+    {
+        writer.write(static_cast<std::uint8_t>(input.edits.size()));
+    }
+    for (const SurfaceEdit& edit : input.edits)
+    {
+        write_edit(writer, edit);
     }
     writer.write_bytes(has_budgets ? std::span<const std::byte>(coded_budgets)
                                    : std::span<const std::byte>{});

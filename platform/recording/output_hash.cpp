@@ -15,9 +15,9 @@ static_assert(sizeof(ToolOutput) == 256);
 static_assert(sizeof(PairOutput) == 232);
 static_assert(sizeof(Contact) == 96);
 static_assert(sizeof(MeshReport) == 8 * kMaxMeetingFaces + 24);
-static_assert(sizeof(ModelOutput) == 80);
+static_assert(sizeof(ModelOutput) == 96);
 static_assert(sizeof(WorkCounters) == 64 + 4 * kSkips);
-static_assert(sizeof(SceneOutput) == 20 + 4 * kChangeRefusals);
+static_assert(sizeof(SceneOutput) == 20 + 4 * kChangeRefusals + 4 * kEditRefusals);
 
 class Hash
 {
@@ -166,6 +166,11 @@ std::uint64_t hash_models(std::span<const ModelOutput> models) noexcept
         {
             hash.add(static_cast<std::uint64_t>(model.stage));
         }
+        if (model.added.capacity != 0)
+        {
+            hash.add(model.added);
+            hash.add(std::uint64_t{model.edit_revision});
+        }
     }
     return hash.value();
 }
@@ -188,6 +193,10 @@ std::uint64_t hash_work(const WorkCounters& work, const SceneOutput& scene,
         hash.add(std::uint64_t{count});
     }
     for (const std::uint32_t times : scene.refused)
+    {
+        hash.add(std::uint64_t{times});
+    }
+    for (const std::uint32_t times : scene.edits_refused)
     {
         hash.add(std::uint64_t{times});
     }

@@ -69,6 +69,9 @@ static_assert(static_cast<int>(Prediction::quadratic) == 2);
 static_assert(static_cast<int>(Prediction::distance_query) == 3);
 static_assert(static_cast<int>(Prediction::automatic) == 4);
 
+/// Flags of a model's capacities: no cache; the room for added faces follows.
+constexpr std::uint32_t kCacheOff = 1;
+constexpr std::uint32_t kHasEditFaces = 2;
 /// Bits of a tool's two flag bytes, two bits each.
 constexpr std::uint32_t kWantsContacts = 1;
 constexpr std::uint32_t kWantsPairs = 2;
@@ -239,7 +242,12 @@ std::vector<std::byte> code_model(const RecordedModel& model)
     {
         append(bytes, capacity);
     }
-    append(bytes, static_cast<std::uint8_t>(capacities.cache_off));
+    append(bytes, static_cast<std::uint8_t>((capacities.cache_off ? kCacheOff : 0U) |
+                                            (capacities.edit_faces > 0 ? kHasEditFaces : 0U)));
+    if (capacities.edit_faces > 0)
+    {
+        append(bytes, capacities.edit_faces);
+    }
     append(bytes, static_cast<std::uint32_t>(model.header.size()));
     append_bytes(bytes, model.header);
     append_bytes(bytes, model.base);
@@ -344,8 +352,10 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, bool 
     {
         *capacity = reader.read<std::uint32_t>();
     }
-    const auto cache_off = reader.read<std::uint8_t>();
-    capacities.cache_off = cache_off != 0;
+    const auto flags = reader.read<std::uint8_t>();
+    capacities.cache_off = (flags & kCacheOff) != 0;
+    const bool has_edit_faces = (flags & kHasEditFaces) != 0;
+    capacities.edit_faces = has_edit_faces ? reader.read<std::uint32_t>() : 0;
     const auto header = reader.read_bytes(reader.read<std::uint32_t>());
     const auto base = reader.read_bytes(reader.remaining());
     model.header.assign(header.begin(), header.end());
@@ -360,9 +370,14 @@ std::optional<std::string> parse_model(std::span<const std::byte> payload, bool 
         return std::string("the model's header is damaged: ") + refusal_text(parsed.error());
     }
     counts = parsed.value().counts();
-    if (cache_off > 1)
+    if (flags > (kCacheOff | kHasEditFaces))
     {
-        return "the switch of the cache is " + std::to_string(cache_off) + "; 0 and 1 are allowed";
+        return "the flags of the model are " + std::to_string(flags) + "; 0 to 3 are allowed";
+    }
+    if (has_edit_faces && (capacities.edit_faces < 1 || capacities.edit_faces > kMaxAddedFaces))
+    {
+        return "there is room for " + std::to_string(capacities.edit_faces) +
+               " added faces; 1 to " + std::to_string(kMaxAddedFaces) + " are allowed";
     }
     if (has_streamed_models && model.base.empty())
     {

@@ -136,6 +136,8 @@ Json models_of(const RunRecord& record)
                         {"hash", hash_text(served.hash)},
                         {"faces", header.fields().source_faces},
                         {"diagonal_m", header.diagonal_m()},
+                        {"edits", output.edit_revision},
+                        {"added_faces", output.added.used},
                         {"pages_used_max", output.pages.used_max},
                         {"faces_used_max", output.faces.used_max},
                         {"refined_records", output.refined_records},
@@ -294,6 +296,15 @@ Json scene_of(const RunRecord& record)
             {"traversals", statistics.scene_walks},
             {"models", models},
             {"changes_refused", refused}};
+}
+
+Json carving_of(const std::optional<CutCounts>& cuts)
+{
+    return !cuts ? Json(nullptr)
+                 : Json{{"sent", cuts->sent},
+                        {"unsent", cuts->unsent},
+                        {"samples_lost", cuts->samples_lost},
+                        {"volume_mm3", cuts->volume_m3 * 1e9}};
 }
 
 Json force_of(const RunStatistics& statistics)
@@ -517,6 +528,7 @@ Json make_report(const Options& options, const Controller& controller, const Fin
               {"system_calls_outside", statistics.deadlines.calls.outside}}},
             {"recording", recording_of(record.run.recording)},
             {"trace", trace_of(record.run.trace)},
+            {"carving", carving_of(record.run.cuts)},
             {"telemetry",
              {{"sent", record.run.telemetry_sent}, {"states_sent", record.run.states_sent}}},
             {"force", force_of(statistics)},

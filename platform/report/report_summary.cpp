@@ -335,6 +335,14 @@ SummaryFacts run_facts(const Json& report)
     {
         facts.emplace_back("recording", recording_text(report["recording"]));
     }
+    if (const Json& carving = report["carving"]; !carving.is_null())
+    {
+        facts.emplace_back(
+            "carving", fmt::format("{} sent for at most {:.3g} mm^3, {} not sent",
+                                   counted(carving["sent"].get<std::uint64_t>(), "edit request"),
+                                   carving["volume_mm3"].get<double>(),
+                                   carving["unsent"].get<std::uint64_t>()));
+    }
     if (const Json& trace = report["trace"]; !trace.is_null())
     {
         facts.emplace_back(

@@ -3,19 +3,13 @@
 #include "platform/world/world_core.hpp"
 
 #include "platform/choices/messages.hpp"
-#include "platform/choices/option_ranges.hpp"
-#include "platform/choices/tool_words.hpp"
-#include "platform/devices/remote/info_fault.hpp"
 #include "platform/loop/assertion_brake.hpp"
 #include "platform/machine/posix/posix_clock.hpp"
-#include "platform/readers/file_readers.hpp"
 #include "platform/scene/material_limits.hpp"
-#include "platform/scene/object_pose.hpp"
+#include "platform/world/program_devices.hpp"
+#include "platform/world/world_values.hpp"
 #include "platform/world/world_words.hpp"
-#include "rt_core/math/rotation.hpp"
 #include "transport/base/counted.hpp"
-#include "transport/material_ranges.hpp"
-#include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
 
@@ -25,9 +19,7 @@
 #include <filesystem>
 #include <iterator>
 #include <system_error>
-#include <tuple>
 #include <utility>
-#include <variant>
 
 namespace tactus
 {
@@ -36,7 +28,6 @@ namespace
 {
 
 using hrtc::failure;
-using hrtc::OptionRange;
 
 constexpr const char* kOwnThread = "called from a callback or device of the World; call it on "
                                    "another thread";
@@ -52,97 +43,9 @@ std::optional<Refusal> fault_of_thread(std::string_view call)
 /// Only one loop of a process can brake its devices when an assertion fails (AssertionBrake).
 std::atomic<bool> has_loop{false};
 
-/// Refusal of an argument or option out of its range.
-Refusal wrong_value(std::string text)
-{
-    return {std::move(text), true};
-}
-
-Material material_of(const MaterialOptions& options)
-{
-    Material material;
-    material.stiffness_n_per_m = options.stiffness_n_per_m.value_or(Material{}.stiffness_n_per_m);
-    material.static_friction = options.static_friction;
-    material.dynamic_friction = options.dynamic_friction.value_or(options.static_friction);
-    material.damping_n_s_per_m = options.damping_n_s_per_m;
-    material.viscosity_n_s_per_m = options.viscosity_n_s_per_m;
-    material.texture_height_m = options.texture_height_m;
-    material.texture_length_m = options.texture_length_m;
-    return material;
-}
-
-Result<Material, Refusal> checked_material(const MaterialOptions& options)
-{
-    const Material material = material_of(options);
-    return is_in_range(material) ? Result<Material, Refusal>(material)
-                                 : wrong_value(fmt::format("material: out of range; allowed are {}",
-                                                           kMaterialRanges));
-}
-
-Result<Similarity, Refusal> checked_place(const Pose& pose)
-{
-    const auto checked = checked_pose(pose);
-    if (!checked)
-    {
-        return wrong_value(fmt::format(
-            "pose: {} is out of range; allowed are a unit quaternion, a translation within {} m "
-            "and a scale of {} to {}",
-            kPoseRefusalNames[static_cast<std::size_t>(checked.error())], kPoseReachMax_m,
-            kPoseScaleMin, kPoseScaleMax));
-    }
-    return hrtc::to_similarity(checked.value());
-}
-
-std::optional<Refusal> fault_of(const HandPose& pose)
-{
-    const bool is_near = std::ranges::all_of(pose.position_m, [](double x)
-                                             { return std::abs(x) < kGoalRange_m; }); // NaN fails.
-    if (!is_near)
-    {
-        return wrong_value(fmt::format("position_m: ({}, {}, {}); each must be within {} m",
-                                       pose.position_m[0], pose.position_m[1], pose.position_m[2],
-                                       kGoalRange_m));
-    }
-    return is_unit(pose.rotation, kRotationTolerance)
-               ? std::nullopt
-               : std::optional(
-                     wrong_value(fmt::format("rotation: ({}, {}, {}, {}) is no quaternion of "
-                                             "length 1 within {}",
-                                             pose.rotation[0], pose.rotation[1], pose.rotation[2],
-                                             pose.rotation[3], kRotationTolerance)));
-}
-
-/// Fault of an option outside of its range; empty if it is in it or not given.
-template <typename Number, typename Limit>
-std::string fault_in(const char* name, const std::optional<Number>& value,
-                     const OptionRange<Limit>& range)
-{
-    const bool is_in = !value || (static_cast<double>(*value) >= static_cast<double>(range.low) &&
-                                  static_cast<double>(*value) <= static_cast<double>(range.high));
-    return is_in ? std::string()
-                 : fmt::format("{}: {}; {} to {} is allowed", name, *value, range.low, range.high);
-}
-
-/// True for a device whose samples have the machine's time, and which needs the guards of start().
-bool runs_in_real_time(const hrtc::ToolOptions& tool)
-{
-    const hrtc::DeviceKind kind = tool.device.kind;
-    return kind == hrtc::DeviceKind::udp || kind == hrtc::DeviceKind::dhd ||
-           kind == hrtc::DeviceKind::plugin;
-}
-
-std::string name_of_file(const std::string& path)
-{
-    return std::filesystem::path(path).stem().string();
-}
-
 } // namespace
 
-WorldCore::WorldCore(WorldOptions options) : asked_(std::move(options))
-{
-    options_.tools.clear();
-    options_.readers = hrtc::file_readers();
-}
+WorldCore::WorldCore(WorldOptions options) : asked_(std::move(options)), plan_(asked_.rate_hz) {}
 
 WorldCore::~WorldCore()
 {
@@ -224,8 +127,8 @@ Result<std::size_t, Refusal> WorldCore::model_of(const WorldObject& like) const
     }
     if (phase_.load() == Phase::open)
     {
-        return like.number_ < options_.objects.size()
-                   ? Result<std::size_t, Refusal>(options_.objects[like.number_].model)
+        return like.number_ < plan_.options().objects.size()
+                   ? Result<std::size_t, Refusal>(plan_.options().objects[like.number_].model)
                    : failure("add(): a World with a scene has no other objects at the start");
     }
     const auto model = scene_->model_of({like.number_, like.generation_});
@@ -253,27 +156,25 @@ std::vector<WorldObject> WorldCore::add_scene(const std::string& path)
     std::vector<WorldObject> objects;
     const auto refuse = [&](Refusal refusal)
     { objects.push_back(handle_or_refusal<WorldObject>(std::move(refusal))); };
-    if (phase_.load() != Phase::open || !options_.objects.empty() || !options_.models.empty())
+    if (phase_.load() != Phase::open || !plan_.options().objects.empty() ||
+        !plan_.options().models.empty())
     {
         refuse(failure(fmt::format("{}: a scene is added first, before the World runs, and brings "
                                    "all objects of the start",
                                    path)));
         return objects;
     }
-    auto scene = options_.readers.read_scene(path);
-    if (!scene)
+    auto placed = plan_.take_scene(path);
+    if (!placed)
     {
-        refuse(scene.error());
+        refuse(placed.error());
         return objects;
     }
-    options_.scene = path;
-    has_files_ = true;
     const std::lock_guard naming(names_mutex_);
-    for (const hrtc::PlacedObject& object : scene.value().objects)
+    for (hrtc::PlacedObject& object : placed.value())
     {
         const auto number = static_cast<std::uint32_t>(objects.size());
-        names_[number] =
-            object.name.empty() ? name_of_file(scene.value().models[object.model]) : object.name;
+        names_[number] = std::move(object.name);
         objects.push_back(handle_of(number, 0));
     }
     return objects;
@@ -289,77 +190,14 @@ std::optional<Refusal> WorldCore::error() const
     return first_refusal_;
 }
 
-/// Index of the model in the options; a file or a mesh is read first.
-Result<std::size_t, Refusal> WorldCore::take_model(const WorldModel& model)
-{
-    std::string name = model.text;
-    const bool is_published = model.kind == WorldModel::Kind::published;
-    if (is_published)
-    {
-        if (const auto selector = parse_selector(name); !selector)
-        {
-            return selector.error();
-        }
-    }
-    else if (model.kind != WorldModel::Kind::file)
-    {
-        if (phase_.load() != Phase::open) // Encoding takes long, and each mesh is a new model.
-        {
-            return failure("the World runs; add each mesh before the first frame, and further "
-                           "objects of it by their handles");
-        }
-        auto encoded = meshes_.encode(model);
-        if (!encoded)
-        {
-            return encoded.error();
-        }
-        name = std::move(encoded).value();
-    }
-    else if (options_.readers.is_mesh_name(name))
-    {
-        return failure(fmt::format("{}: a mesh; add it by mesh_file()", name));
-    }
-    const auto known = std::ranges::find(options_.models, name);
-    if (known != options_.models.end())
-    {
-        return static_cast<std::size_t>(known - options_.models.begin());
-    }
-    if (phase_.load() != Phase::open)
-    {
-        return failure(fmt::format(
-            "{}: the World runs and has no such model; add each model before the first frame",
-            name));
-    }
-    if ((is_published && has_files_) || (!is_published && has_published_))
-    {
-        return failure(
-            fmt::format("{}: models of files and of servers can't be in one World", name));
-    }
-    if (options_.models.size() == kMaxModels)
-    {
-        return failure(fmt::format("{}: a World has at most {} models", name, kMaxModels));
-    }
-    if (!is_published)
-    {
-        if (const auto opened = serve_from_file(name, "model", hrtc::log_line); !opened)
-        {
-            return opened.error();
-        }
-    }
-    has_published_ = has_published_ || is_published;
-    has_files_ = has_files_ || !is_published;
-    options_.models.push_back(name);
-    return options_.models.size() - 1;
-}
-
 Result<WorldObject, Refusal> WorldCore::try_add(const WorldModel& model,
                                                 const ObjectOptions& options)
 {
-    if (!options_.scene.empty() && phase_.load() == Phase::open)
+    if (!plan_.options().scene.empty() && phase_.load() == Phase::open)
     {
         return failure("a World with a scene has no other objects at the start");
     }
-    const auto taken = take_model(model);
+    const auto taken = plan_.take_model(model, phase_.load() == Phase::open);
     return taken ? place(taken.value(), options) : Result<WorldObject, Refusal>(taken.error());
 }
 
@@ -377,23 +215,23 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
         return material.error();
     }
     const Phase phase = phase_.load();
-    hrtc::ProgramScene::Key key{static_cast<std::uint32_t>(options_.objects.size()), 0};
+    hrtc::ProgramScene::Key key{static_cast<std::uint32_t>(plan_.options().objects.size()), 0};
     if (phase == Phase::ended)
     {
         return failure(kHasEnded);
     }
     if (phase == Phase::open)
     {
-        if (options_.objects.size() == kMaxObjects)
+        if (plan_.options().objects.size() == kMaxObjects)
         {
             return failure(fmt::format("a World has at most {} objects", kMaxObjects));
         }
-        options_.objects.push_back({.model = model,
-                                    .place = place.value(),
-                                    .material = material.value(),
-                                    .has_place = true,
-                                    .has_material = true,
-                                    .name = options.name});
+        plan_.options().objects.push_back({.model = model,
+                                           .place = place.value(),
+                                           .material = material.value(),
+                                           .has_place = true,
+                                           .has_material = true,
+                                           .name = options.name});
     }
     else
     {
@@ -417,8 +255,12 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
         }
         key = *added;
     }
-    const std::string of_model = phase == Phase::open ? name_of_file(options_.models[model])
+    const std::string of_model = phase == Phase::open ? name_of_file(plan_.options().models[model])
                                                       : session_->controller().models()[model].name;
+    if (phase != Phase::open)
+    {
+        session_->name_object(key.number, options.name);
+    }
     const std::lock_guard lock(names_mutex_);
     names_[key.number] = options.name.empty() ? of_model : options.name;
     return handle_of(key.number, key.generation);
@@ -431,251 +273,18 @@ Result<Hand, Refusal> WorldCore::try_add(const WorldTool& tool, const WorldDevic
     {
         return failure("the World runs; add each hand before the first frame");
     }
-    if (options_.tools.size() == kMaxTools)
+    const auto number = plan_.add_hand(tool, device, options);
+    if (!number)
     {
-        return failure(fmt::format("a World has at most {} hands", kMaxTools));
+        return number.error();
     }
-    if (options.force && !options.fixture.empty())
-    {
-        return failure("a hand has a fixture or a force of the program, not both");
-    }
-    const std::size_t number = options_.tools.size();
-    hrtc::ToolOptions made;
-    HandParts parts;
-    const auto set = [&](const char* part, const std::string& text,
-                         std::string (*setter)(const std::string&, hrtc::ToolOptions&))
-    {
-        const std::string fault = text.empty() ? "" : setter(text, made);
-        return fault.empty() ? "" : fmt::format("{}: {}", part, fault);
-    };
-    for (const std::string& fault : {set_device(made, device, parts, number), set_shape(made, tool),
-                                     set("payload", options.payload, hrtc::set_tool_mass),
-                                     set("fixture", options.fixture, hrtc::set_tool_fixture)})
-    {
-        if (!fault.empty())
-        {
-            return failure(fault);
-        }
-    }
-    if (options.force)
-    {
-        parts.force = std::make_unique<hrtc::CallbackForce>(
-            options.force, nanoseconds(1'000'000'000 / std::max<std::int64_t>(asked_.rate_hz, 1)));
-        made.external_force = parts.force.get();
-    }
-    options_.tools.push_back(std::move(made));
-    hands_.push_back(std::move(parts));
     Hand hand;
     hand.world_ = weak_from_this();
-    hand.number_ = static_cast<std::uint32_t>(number);
+    hand.number_ = number.value();
     return hand;
 }
 
-/// Sets the tool's shape. Returns the fault; empty if there is none.
-std::string WorldCore::set_shape(hrtc::ToolOptions& made, const WorldTool& tool)
-{
-    if (!tool.words.empty())
-    {
-        const std::string fault = hrtc::set_tool_shape(tool.words, made);
-        return fault.empty() ? take_named_mesh(made.mesh_model()) : "tool: " + fault;
-    }
-    hrtc::ToolChoice& shape = made.shape.emplace();
-    shape.radius_m = tool.radius_m;
-    if (!(tool.radius_m >= 0.0 && tool.radius_m <= 1.0))
-    {
-        return fmt::format("tool: radius {} m; 0 to 1 is allowed", tool.radius_m);
-    }
-    if (tool.model)
-    {
-        auto model = take_model(*tool.model);
-        if (!model)
-        {
-            return "tool: " + model.error().text;
-        }
-        shape.mesh_model = options_.models[model.value()];
-        shape.words = "mesh:" + name_of_file(shape.mesh_model);
-        return {};
-    }
-    std::vector<Vec3> corners;
-    for (const auto& [x, y, z] : tool.corners)
-    {
-        corners.emplace_back(x, y, z);
-    }
-    if (corners.empty() ||
-        !std::ranges::all_of(corners, [](const Vec3& corner) { return corner.allFinite(); }))
-    {
-        return "tool: a hull needs corners, all of them finite";
-    }
-    shape.words = fmt::format("hull of {}", counted(corners.size(), "corner"));
-    const auto refusal = hrtc::set_hull(shape, corners, "tool");
-    return refusal ? refusal->text : std::string();
-}
-
-/// Takes the model that a tool's words name; empty: none. Returns the fault; empty if there is
-/// none.
-std::string WorldCore::take_named_mesh(const std::string& name)
-{
-    const bool is_file = name.ends_with(".spm") || options_.readers.is_mesh_name(name);
-    const auto model = name.empty() ? Result<std::size_t, Refusal>(std::size_t{0})
-                                    : take_model(is_file ? model_file(name) : published(name));
-    return model ? std::string() : "tool: " + model.error().text;
-}
-
-/// Sets the tool's device. Returns the fault; empty if there is none.
-std::string WorldCore::set_device(hrtc::ToolOptions& made, const WorldDevice& device,
-                                  HandParts& parts, std::size_t hand)
-{
-    const DeviceOptions& options = device.options;
-    if (!device.words.empty())
-    {
-        for (const auto& [part, text, setter] :
-             {std::tuple("device", &device.words, &hrtc::set_tool_device),
-              std::tuple("limits", &options.limits, &hrtc::set_tool_limits),
-              std::tuple("frame", &options.frame, &hrtc::set_tool_frame),
-              std::tuple("motion", &options.motion, &hrtc::set_tool_motion)})
-        {
-            const std::string fault = text->empty() ? "" : setter(*text, made);
-            if (!fault.empty())
-            {
-                return fmt::format("{}: {}", part, fault);
-            }
-        }
-        return {};
-    }
-    if (device.own == nullptr && !device.is_program)
-    {
-        return "device: neither words nor an object; by_program() is a hand without a device";
-    }
-    if (!options.frame.empty() || !options.motion.empty() ||
-        (device.own != nullptr && !options.limits.empty()))
-    {
-        return "device: a device of the program has no frame and no motion, and its own limits";
-    }
-    if (!options.limits.empty())
-    {
-        const std::string fault = hrtc::set_tool_limits(options.limits, made);
-        if (!fault.empty())
-        {
-            return "limits: " + fault;
-        }
-    }
-    const char* const fault = device.own != nullptr ? find_fault(device.own->info()) : nullptr;
-    if (fault != nullptr)
-    {
-        return fault;
-    }
-    parts.own = device.own;
-    parts.is_held = device.own == nullptr;
-    made.device.kind = hrtc::DeviceKind::program;
-    made.device.make = [this, hand,
-                        limits =
-                            made.device.limits]() -> Result<std::unique_ptr<HapticDevice>, Refusal>
-    {
-        HandParts& of_hand = hands_[hand];
-        if (of_hand.own != nullptr)
-        {
-            return std::unique_ptr<HapticDevice>(std::make_unique<hrtc::SharedDevice>(of_hand.own));
-        }
-        auto held = std::make_unique<hrtc::HeldDevice>(limits);
-        of_hand.held = held.get();
-        if (of_hand.first_pose)
-        {
-            held->hold(of_hand.first_pose->position_m, of_hand.first_pose->rotation,
-                       PosixClock().now());
-        }
-        return std::unique_ptr<HapticDevice>(std::move(held));
-    };
-    return {};
-}
-
 // --- Start and end -------------------------------------------------------------------------------
-
-std::optional<Refusal> WorldCore::check_options() const
-{
-    const WorldOptions& asked = asked_;
-    using namespace hrtc;
-    const auto all = [](auto value) { return std::optional(value); };
-    for (const std::string& fault :
-         {fault_in("rate_hz", all(asked.rate_hz), kRateRange_hz),
-          fault_in("memory_mib", all(asked.memory_mib), kPoolRange_mib),
-          fault_in("stiffness_n_per_m", all(asked.stiffness_n_per_m), kStiffnessRange_n_per_m),
-          fault_in("angular_stiffness_nm_per_rad", asked.angular_stiffness_nm_per_rad,
-                   kAngularStiffnessRange_nm_per_rad),
-          fault_in("shading_m", asked.shading_m, kShadingRange_m),
-          fault_in("force_tolerance_n", all(asked.force_tolerance_n), kForceToleranceRange_n),
-          fault_in("object_speed_m_per_s", all(asked.object_speed_m_per_s),
-                   kObjectSpeedRange_m_per_s),
-          fault_in("proxy_speed_m_per_s", asked.proxy_speed_m_per_s, kProxySpeedRange_m_per_s),
-          fault_in("speed_limit_m_per_s", asked.speed_limit_m_per_s, kSpeedLimitRange_m_per_s),
-          fault_in("clutch_button", asked.clutch_button, kClutchRange),
-          fault_in("objects_max", all(asked.objects_max),
-                   OptionRange<std::uint32_t>{0, kMaxObjects}),
-          fault_in("wait_s", all(asked.wait_s), kWaitRange_s),
-          fault_in("domain", all(asked.domain), kDomainRange),
-          fault_in("duration_s", asked.duration_s, kDurationRange_s),
-          fault_in("priority", all(asked.priority),
-                   OptionRange<int>{RtThreadOptions::kPriorityMin, RtThreadOptions::kPriorityMax}),
-          fault_in("cpu", asked.cpu, kCpuRange),
-          fault_in("supervisor_periods", asked.supervisor_periods, kSupervisorRange)})
-    {
-        if (!fault.empty())
-        {
-            return wrong_value(fault);
-        }
-    }
-    if (asked.shading_m && std::ranges::none_of(options_.tools, &is_round))
-    {
-        return wrong_value("shading_m: needs a point or a sphere as a tool");
-    }
-    const auto objects = static_cast<std::uint32_t>(options_.objects.size());
-    if (asked.objects_max != 0 && asked.objects_max < objects)
-    {
-        return wrong_value(fmt::format("objects_max: {} is less than the {} at the start",
-                                       asked.objects_max, counted(objects, "object")));
-    }
-    return asked.name.empty() || is_valid_name(asked.name)
-               ? std::nullopt
-               : std::optional(
-                     wrong_value(fmt::format("name: '{}' is not {}", asked.name, kNameForm)));
-}
-
-/// Takes the World's options over into those of a run.
-void WorldCore::take_options(bool is_stepped)
-{
-    hrtc::Options& options = options_;
-    options.objects_max = asked_.objects_max;
-    options.transport = has_published_ ? hrtc::TransportKind::dds : hrtc::TransportKind::file;
-    options.domain = asked_.domain;
-    options.is_watched = has_published_ || asked_.is_watched;
-    options.name = asked_.name;
-    options.follows_poses = asked_.follows_poses;
-    options.wait_s = asked_.wait_s;
-    options.rate_hz = asked_.rate_hz;
-    options.runs_until_stopped = is_stepped || !asked_.duration_s;
-    options.duration_s = asked_.duration_s.value_or(hrtc::Options{}.duration_s);
-    options.record_path = asked_.record;
-    options.trace_path = is_stepped ? "" : asked_.trace;
-    options.pool_mib = asked_.memory_mib;
-    options.static_when_it_fits = asked_.loads_whole;
-    options.stiffness_n_per_m = asked_.stiffness_n_per_m;
-    options.angular_stiffness_nm_per_rad = asked_.angular_stiffness_nm_per_rad.value_or(0.0);
-    options.shading_m = asked_.shading_m.value_or(0.0);
-    options.force_tolerance_n = asked_.force_tolerance_n;
-    options.speed_limit_m_per_s = asked_.speed_limit_m_per_s;
-    options.object_speed_m_per_s = asked_.object_speed_m_per_s;
-    options.clutch_button = asked_.clutch_button;
-    options.supervisor_periods = asked_.supervisor_periods;
-    options.proxy_speed_m_per_s = asked_.proxy_speed_m_per_s;
-    options.has_guardian = !is_stepped && !asked_.has_no_guardian;
-    options.thread.priority = asked_.priority;
-    options.thread.cpu = is_stepped ? std::nullopt : asked_.cpu;
-    options.thread.allow_no_rt = asked_.allow_no_rt;
-    options.is_stepped = is_stepped;
-    options.virtual_time = is_stepped;
-    options.thread.is_realtime = !is_stepped;
-    options.thread.lock_memory = !is_stepped;
-    options.thread.processors_awake = !is_stepped;
-}
 
 /// Reason why a call that begins or needs frames is refused.
 std::optional<Refusal> WorldCore::why_not(std::string_view call) const
@@ -688,11 +297,11 @@ std::optional<Refusal> WorldCore::why_not(std::string_view call) const
     {
         return first_refusal_;
     }
-    if (options_.tools.empty())
+    if (plan_.options().tools.empty())
     {
         return failure(fmt::format("{}: the World has no hand; add one first", call));
     }
-    if (options_.objects.empty() && options_.scene.empty())
+    if (plan_.options().objects.empty() && plan_.options().scene.empty())
     {
         return failure(fmt::format("{}: the World has no object; add one first", call));
     }
@@ -716,24 +325,24 @@ std::optional<Refusal> WorldCore::open(bool is_stepped)
 
 std::optional<Refusal> WorldCore::try_open(bool is_stepped)
 {
-    if (auto refusal = check_options())
+    if (auto refusal = plan_.fault_of(asked_))
     {
         return refusal;
     }
-    const auto real = std::ranges::find_if(options_.tools, &runs_in_real_time);
-    if (is_stepped && real != options_.tools.end())
+    const auto real = std::ranges::find_if(plan_.options().tools, &runs_in_real_time);
+    if (is_stepped && real != plan_.options().tools.end())
     {
         return failure(fmt::format("step(): the device of hand {} runs in real time; use start()",
-                                   real - options_.tools.begin()));
+                                   real - plan_.options().tools.begin()));
     }
-    take_options(is_stepped);
+    plan_.take_options(asked_, is_stepped);
     std::error_code unread;
     const auto threads =
         std::distance(std::filesystem::directory_iterator("/proc/self/task", unread),
                       std::filesystem::directory_iterator());
     const bool forks =
-        options_.has_guardian &&
-        std::ranges::any_of(options_.tools, hrtc::wants_guard, &hrtc::ToolOptions::device);
+        plan_.options().has_guardian &&
+        std::ranges::any_of(plan_.options().tools, hrtc::wants_guard, &hrtc::ToolOptions::device);
     if (forks && threads > 2) // The caller, which waits, and the keeper, which forks.
     {
         return failure("device: its guardian is a fork, so start the World before other threads, "
@@ -745,7 +354,7 @@ std::optional<Refusal> WorldCore::try_open(bool is_stepped)
         tell_of_callbacks();
         return is_stopping_.load();
     };
-    auto session = hrtc::Session::open(options_, std::move(hooks));
+    auto session = hrtc::Session::open(plan_.options(), std::move(hooks));
     if (!session)
     {
         close();
@@ -758,7 +367,7 @@ std::optional<Refusal> WorldCore::try_open(bool is_stepped)
     is_served_.assign(controller.objects().size(), false);
     for (const std::uint32_t first : controller.first_objects())
     {
-        const bool is_moved = has_published_ && asked_.follows_poses;
+        const bool is_moved = plan_.has_published() && asked_.follows_poses;
         if (is_moved && first < is_served_.size())
         {
             is_served_[first] = true;
@@ -784,10 +393,7 @@ void WorldCore::close()
 void WorldCore::release()
 {
     session_.reset();
-    for (HandParts& hand : hands_)
-    {
-        hand.held = nullptr;
-    }
+    plan_.let_go_of_devices();
 }
 
 Result<Done, Refusal> WorldCore::start()
@@ -954,7 +560,7 @@ Result<Done, Refusal> WorldCore::run_step(double dt_s, std::optional<std::uint32
     {
         return wrong_value(fmt::format("dt_s: {}; 0 or more is allowed", dt_s));
     }
-    if (hand && !hands_[*hand].is_held)
+    if (hand && !plan_.hands()[*hand].is_held)
     {
         return failure("step(): a device moves this hand; call World::step()");
     }
@@ -974,16 +580,16 @@ Result<Done, Refusal> WorldCore::run_step(double dt_s, std::optional<std::uint32
     const auto rate = static_cast<double>(asked_.rate_hz);
     const auto periods = static_cast<std::int64_t>(std::clamp(std::round(dt_s * rate), 1.0, rate));
     hrtc::SessionRun& run = session_->running();
-    const MonotonicTime time = run.now() + options_.period() * periods;
-    for (std::uint32_t i = 0; i < hands_.size(); ++i)
+    const MonotonicTime time = run.now() + plan_.options().period() * periods;
+    for (std::uint32_t i = 0; i < plan_.hands().size(); ++i)
     {
         if (hand == i)
         {
-            hands_[i].held->hold(pose.position_m, pose.rotation, time);
+            plan_.hands()[i].held->hold(pose.position_m, pose.rotation, time);
         }
-        else if (hands_[i].held != nullptr)
+        else if (plan_.hands()[i].held != nullptr)
         {
-            hands_[i].held->keep_until(time);
+            plan_.hands()[i].held->keep_until(time);
         }
     }
     run.step(static_cast<std::uint32_t>(periods));
@@ -1002,7 +608,7 @@ Result<Done, Refusal> WorldCore::hold(std::uint32_t hand, const HandPose& pose)
         return *fault;
     }
     const std::lock_guard lock(mutex_);
-    HandParts& parts = hands_[hand];
+    HandParts& parts = plan_.hands()[hand];
     if (!parts.is_held)
     {
         return failure("hold(): a device moves this hand");
@@ -1070,11 +676,11 @@ Result<Done, Refusal> WorldCore::move(const WorldObject& object, const Pose& pos
     }
     if (phase_.load() == Phase::open)
     {
-        if (object.number_ >= options_.objects.size())
+        if (object.number_ >= plan_.options().objects.size())
         {
             return failure("move(): the file of a scene places its objects until the first frame");
         }
-        options_.objects[object.number_].place = place.value();
+        plan_.options().objects[object.number_].place = place.value();
         return Done{};
     }
     if (const auto refusal = why_served(object, "move()"))
@@ -1104,11 +710,11 @@ Result<Done, Refusal> WorldCore::feel(const WorldObject& object, const MaterialO
     }
     if (phase_.load() == Phase::open)
     {
-        if (object.number_ >= options_.objects.size())
+        if (object.number_ >= plan_.options().objects.size())
         {
             return failure("feel(): the file of a scene has its materials until the first frame");
         }
-        options_.objects[object.number_].material = material.value();
+        plan_.options().objects[object.number_].material = material.value();
         return Done{};
     }
     if (auto why = hrtc::why_unfelt(name_of(object.number_), material.value(),
@@ -1193,11 +799,9 @@ WorldCounts WorldCore::counts() const
     counts.overruns = loop.overruns;
     counts.latency_misses = loop.latency_misses;
     counts.brakes = tap_->brakes();
-    for (const HandParts& hand : hands_) // It no longer changes.
-    {
-        counts.callback_throws += hand.force != nullptr ? hand.force->throws() : 0;
-        counts.callback_overruns += hand.force != nullptr ? hand.force->overruns() : 0;
-    }
+    const CallbackCounts callbacks = plan_.callbacks(); // The hands no longer change.
+    counts.callback_throws = callbacks.throws;
+    counts.callback_overruns = callbacks.overruns;
     return counts;
 }
 
@@ -1212,13 +816,7 @@ std::string WorldCore::name_of(std::uint32_t object) const
 /// that watches the loop.
 void WorldCore::tell_of_callbacks()
 {
-    std::uint64_t throws = 0;
-    std::uint64_t overruns = 0;
-    for (const HandParts& hand : hands_)
-    {
-        throws += hand.force != nullptr ? hand.force->throws() : 0;
-        overruns += hand.force != nullptr ? hand.force->overruns() : 0;
-    }
+    const auto [throws, overruns] = plan_.callbacks();
     if (throws >= std::max<std::uint64_t>(10 * told_throws_, 1))
     {
         told_throws_ = throws;

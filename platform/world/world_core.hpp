@@ -2,14 +2,11 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/run_options.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/loop/hand_tap.hpp"
 #include "platform/scene/program_scene.hpp"
-#include "platform/world/encoded_mesh.hpp"
-#include "platform/world/held_device.hpp"
-#include "platform/world/program_devices.hpp"
 #include "platform/world/world.hpp"
+#include "platform/world/world_plan.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -69,18 +66,6 @@ private:
         ended,
     };
 
-    /// One hand's parts beside its options.
-    struct HandParts
-    {
-        std::shared_ptr<HapticDevice> own; ///< Null without a device of the program.
-        hrtc::HeldDevice* held{nullptr};   ///< The device, while a session has it.
-        DeviceLimits limits{};             ///< Limits of a held device.
-        bool is_held{false};
-        std::optional<HandPose> first_pose;         ///< Pose before the session.
-        std::unique_ptr<hrtc::CallbackForce> force; ///< Null without a callback.
-    };
-
-    [[nodiscard]] Result<std::size_t, Refusal> take_model(const WorldModel& model);
     [[nodiscard]] Result<std::size_t, Refusal> model_of(const WorldObject& like) const;
     [[nodiscard]] Result<WorldObject, Refusal> try_add(const WorldModel& model,
                                                        const ObjectOptions& options);
@@ -88,18 +73,12 @@ private:
                                                      const ObjectOptions& options);
     [[nodiscard]] Result<Hand, Refusal> try_add(const WorldTool& tool, const WorldDevice& device,
                                                 const HandOptions& options);
-    [[nodiscard]] std::string set_shape(hrtc::ToolOptions& made, const WorldTool& tool);
-    [[nodiscard]] std::string take_named_mesh(const std::string& name);
-    [[nodiscard]] std::string set_device(hrtc::ToolOptions& made, const WorldDevice& device,
-                                         HandParts& parts, std::size_t hand);
     template <typename Handle>
     [[nodiscard]] Handle handle_or_refusal(Result<Handle, Refusal> made);
     template <typename Handle>
     [[nodiscard]] Handle refused_handle(Refusal refusal);
     [[nodiscard]] WorldObject handle_of(std::uint32_t number, std::uint32_t generation);
     [[nodiscard]] std::optional<Refusal> why_not(std::string_view call) const;
-    [[nodiscard]] std::optional<Refusal> check_options() const;
-    void take_options(bool is_stepped);
     [[nodiscard]] std::optional<Refusal> open(bool is_stepped);
     [[nodiscard]] std::optional<Refusal> try_open(bool is_stepped);
     void close();
@@ -116,17 +95,13 @@ private:
     void tell_of_callbacks();
     [[nodiscard]] std::string name_of(std::uint32_t object) const;
 
-    /// Guards the members up to has_files_, and session_ once the loop has ended. The keeper's
+    /// Guards the members up to first_refusal_, and session_ once the loop has ended. The keeper's
     /// thread takes it only then: start() holds it while that thread opens models and devices.
     mutable std::mutex mutex_;
     WorldOptions asked_;
-    hrtc::Options options_;
-    hrtc::MeshFolder meshes_;
-    std::vector<HandParts> hands_;
+    WorldPlan plan_;
     std::vector<bool> is_served_; ///< One an object: true if a server moves it.
     std::optional<Refusal> first_refusal_;
-    bool has_published_{false};
-    bool has_files_{false};
 
     std::mutex joining_; ///< Guards keeper_.
     std::thread keeper_;

@@ -68,7 +68,7 @@ void BasicAbTree<Volume>::insert(const ChangedFace& face) noexcept
 
 template <typename Volume>
 void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
-                                      ErrorCode error) noexcept
+                                      ErrorCode error, bool is_outdated) noexcept
 {
     TACTUS_ASSERT(corner < 3);
     const std::uint32_t leaf = leaf_of(prim);
@@ -78,7 +78,8 @@ void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const V
     }
     const std::uint32_t block = leaf / kBlockFaces;
     const std::uint32_t lane = leaf % kBlockFaces;
-    if (move_corner_in_block(blocks_[block], sides_[block], lane, corner, position_m, error))
+    if (move_corner_in_block(blocks_[block], sides_[block], lane, corner, position_m, error,
+                             is_outdated))
     {
         mark(TreeRef::to_block(block));
         return;
@@ -86,7 +87,22 @@ void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const V
     ChangedFace face = describe(block, lane);
     face.corners_m[corner] = position_m;
     face.error = error;
+    face.is_outdated = is_outdated;
     update(face);
+}
+
+template <typename Volume>
+void BasicAbTree<Volume>::outdate(std::uint32_t block, std::uint32_t lanes) noexcept
+{
+    TACTUS_ASSERT(is_block_in_use(block));
+    TACTUS_ASSERT((lanes & ~std::uint32_t{blocks_[block].faces}) == 0);
+    BlockSide& side = sides_[block];
+    if ((lanes & ~std::uint32_t{side.outdated}) != 0)
+    {
+        side.outdated = static_cast<std::uint16_t>(side.outdated | lanes);
+        side.coarse = static_cast<std::uint16_t>(side.coarse | lanes);
+        mark(TreeRef::to_block(block));
+    }
 }
 
 template <typename Volume>
@@ -557,8 +573,12 @@ ChangedFace BasicAbTree<Volume>::describe(std::uint32_t block, std::uint32_t lan
     TACTUS_ASSERT(((std::uint32_t{blocks_[block].faces} >> lane) & 1U) != 0);
     const PrimId prim = sides_[block].prims[lane];
     const Prim& known = prims_[prim.value];
-    return {prim, known.face, known.bucket, sides_[block].errors[lane],
-            block_triangle(blocks_[block], lane)};
+    return {prim,
+            known.face,
+            known.bucket,
+            sides_[block].errors[lane],
+            block_triangle(blocks_[block], lane),
+            ((std::uint32_t{sides_[block].outdated} >> lane) & 1U) != 0};
 }
 
 template <typename Volume>

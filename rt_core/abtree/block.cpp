@@ -87,11 +87,14 @@ void drop_unless_used(BlockGeometry& block, std::uint8_t row) noexcept
     }
 }
 
-void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error) noexcept
+void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error, bool is_outdated) noexcept
 {
     const std::uint32_t bit = 1U << lane;
     side.errors[lane] = error;
-    side.coarse = static_cast<std::uint16_t>(error == 0 ? side.coarse & ~bit : side.coarse | bit);
+    side.coarse = static_cast<std::uint16_t>(error == 0 && !is_outdated ? side.coarse & ~bit
+                                                                        : side.coarse | bit);
+    side.outdated =
+        static_cast<std::uint16_t>(is_outdated ? side.outdated | bit : side.outdated & ~bit);
 }
 
 /// Keeps only the faces in `lanes` and moves them to the first lanes: a kernel skips an empty
@@ -101,6 +104,7 @@ void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noex
     std::size_t to = 0;
     std::uint32_t used = 0;
     std::uint32_t coarse = 0;
+    std::uint32_t outdated = 0;
     for (std::uint32_t left = lanes; left != 0; left &= left - 1, ++to)
     {
         const auto from = static_cast<std::size_t>(std::countr_zero(left));
@@ -110,6 +114,7 @@ void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noex
             used |= 1U << corners[to];
         }
         coarse |= ((std::uint32_t{side.coarse} >> from) & 1U) << to;
+        outdated |= ((std::uint32_t{side.outdated} >> from) & 1U) << to;
         side.errors[to] = side.errors[from];
         side.prims[to] = side.prims[from];
     }
@@ -117,6 +122,7 @@ void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noex
     block.faces = static_cast<std::uint16_t>((1U << to) - 1U);
     block.vertices = static_cast<std::uint16_t>(used);
     side.coarse = static_cast<std::uint16_t>(coarse);
+    side.outdated = static_cast<std::uint16_t>(outdated);
 }
 
 } // namespace
@@ -147,12 +153,13 @@ std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side, const ChangedF
     }
     block.faces = static_cast<std::uint16_t>(block.faces | (1U << lane));
     side.prims[lane] = face.prim;
-    set_error(side, lane, face.error);
+    set_error(side, lane, face.error, face.is_outdated);
     return lane;
 }
 
 bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
-                          std::uint32_t corner, const Vec3f& position_m, ErrorCode error) noexcept
+                          std::uint32_t corner, const Vec3f& position_m, ErrorCode error,
+                          bool is_outdated) noexcept
 {
     TACTUS_ASSERT(((std::uint32_t{block.faces} >> lane) & 1U) != 0);
     const std::uint32_t row = find_or_add_vertex(block, position_m);
@@ -163,7 +170,7 @@ bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t l
     const std::uint8_t left =
         std::exchange(block.corners[corner][lane], static_cast<std::uint8_t>(row));
     drop_unless_used(block, left);
-    set_error(side, lane, error);
+    set_error(side, lane, error, is_outdated);
     return true;
 }
 
@@ -173,6 +180,7 @@ void remove_from_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane
     TACTUS_ASSERT((block.faces & bit) != 0);
     block.faces = static_cast<std::uint16_t>(block.faces & ~bit);
     side.coarse = static_cast<std::uint16_t>(side.coarse & ~bit);
+    side.outdated = static_cast<std::uint16_t>(side.outdated & ~bit);
     side.prims[lane] = PrimId{};
     for (std::size_t corner = 0; corner < 3; ++corner)
     {
@@ -189,6 +197,7 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
     other_side.prims = side.prims;
     other_side.errors = side.errors;
     other_side.coarse = side.coarse;
+    other_side.outdated = side.outdated;
     keep_lanes(block, side, block.faces & ~moved);
     keep_lanes(other, other_side, moved);
 }
@@ -197,7 +206,8 @@ std::uint32_t lanes_above(const BlockSide& side, ErrorCode tolerance) noexcept
 {
     Bytes errors;
     std::memcpy(&errors, side.errors.data(), sizeof errors);
-    return side.coarse & bits_of_bytes(reinterpret_cast<Bytes>(errors > tolerance));
+    return (side.coarse & bits_of_bytes(reinterpret_cast<Bytes>(errors > tolerance))) |
+           side.outdated;
 }
 
 float largest_error_quanta(const BlockSide& side) noexcept

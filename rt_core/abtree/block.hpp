@@ -45,12 +45,14 @@ struct BlockSide
     /// Parent node, kNoNode for a root block; the next free block while this one is free.
     std::uint32_t parent{0xFFFF'FFFFU};
     std::uint32_t link{0xFFFF'FFFFU}; ///< Next block that waits for refit.
-    std::uint16_t coarse{0};          ///< Lanes whose error is not 0.
-    std::uint8_t child{0};            ///< Index as child of the parent.
+    /// Lanes of faces that are not exact: their error is not 0, or they are outdated.
+    std::uint16_t coarse{0};
+    std::uint8_t child{0}; ///< Index as child of the parent.
     bool in_use{false};
     bool is_marked{false}; ///< True while in the list of marked blocks, even once freed.
     std::uint8_t owner{0}; ///< Model of the block's tree.
-    std::array<std::uint8_t, 2> reserved{};
+    /// Lanes of coarse faces that may stand for removed ones (ChangedFace::is_outdated).
+    std::uint16_t outdated{0};
 };
 
 static_assert(sizeof(BlockSide) == 96);
@@ -64,7 +66,8 @@ static_assert(sizeof(BlockSide) == 96);
 /// face unchanged, if the block has no row for the position.
 [[nodiscard]] bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
                                         std::uint32_t corner, const Vec3f& position_m,
-                                        ErrorCode error) noexcept TACTUS_NONBLOCKING;
+                                        ErrorCode error,
+                                        bool is_outdated) noexcept TACTUS_NONBLOCKING;
 
 /// Removes an active face, with the rows that only it used.
 void remove_from_block(BlockGeometry& block, BlockSide& side,
@@ -92,7 +95,8 @@ void halve_block(BlockGeometry& block, BlockSide& side, std::uint32_t moved, Blo
 /// The largest error of the block's faces, in quanta.
 [[nodiscard]] float largest_error_quanta(const BlockSide& side) noexcept TACTUS_NONBLOCKING;
 
-/// Lanes whose error exceeds `tolerance`, one bit each; for 0 those of BlockSide::coarse.
+/// Lanes that do not count as the surface, one bit each: their error exceeds `tolerance`, or they
+/// are outdated. For 0 those of BlockSide::coarse.
 [[nodiscard]] std::uint32_t lanes_above(const BlockSide& side,
                                         ErrorCode tolerance) noexcept TACTUS_NONBLOCKING;
 

@@ -201,6 +201,9 @@ private:
             check_is_inside(box, index, lane);
         }
         block(geometry.vertices == rows, index, "has vertices that differ from those of its faces");
+        coarse |= side.outdated;
+        block((side.outdated & ~std::uint32_t{geometry.faces}) == 0, index,
+              "has outdated bits without a face");
         block(side.coarse == coarse, index, "has wrong coarse bits");
         if (side.parent != kNoNode)
         {

@@ -121,6 +121,11 @@ private:
             return;
         }
         ++active_;
+        if (forest_.is_added(face.id))
+        {
+            check_added(prim);
+            return;
+        }
         if (!expect(face.id.value < forest_.counts_.face_ids(), "prim", prim.value,
                     "holds a face that the model does not have") ||
             !expect(forest_.find(face.id) == prim, "face", face.id.value,
@@ -132,6 +137,27 @@ private:
         const ErrorCode error = forest_.error_in(face.id, face.state);
         hash_ += VertexForest::hash_of(face, error);
         check_tree(prim, error);
+    }
+
+    /// Checks a face that an edit added: it is in the tree as the edit gave it.
+    void check_added(PrimId prim) noexcept
+    {
+        const VertexForest::ActiveFace& face = forest_.faces_[prim.value];
+        const AbTree& tree = *forest_.tree_;
+        ++expected_;
+        hash_ += VertexForest::hash_of(face, 0);
+        const std::uint32_t leaf = tree.leaf_of(prim);
+        if (!expect(forest_.find(face.id) == prim, "face", face.id.value,
+                    "is not found in its slot") ||
+            !expect(tree.face_of(prim) == face.id, "face", face.id.value,
+                    "has another name in the tree") ||
+            leaf == AbTree::kNoLeaf)
+        {
+            return;
+        }
+        expect(block_triangle(tree.block(leaf / kBlockFaces), leaf % kBlockFaces) ==
+                   forest_.edits_->added(face.id).corners_m,
+               "face", face.id.value, "has another corner in the tree");
     }
 
     /// True if another model owns the face: the tree knows the owner of a placed face, the index
@@ -203,6 +229,16 @@ private:
     {
         const VertexForest::ActiveFace& face = forest_.faces_[prim.value];
         const AbTree& tree = *forest_.tree_;
+        const std::array<Vec3f, 3> known_m{forest_.position_of(face.corners[0]),
+                                           forest_.position_of(face.corners[1]),
+                                           forest_.position_of(face.corners[2])};
+        const VertexForest::Standing standing = forest_.standing_of(face, error, known_m);
+        if (standing == VertexForest::Standing::hidden)
+        {
+            expect(tree.face_of(prim).is_none(), "face", face.id.value,
+                   "was removed by an edit and is in the tree");
+            return;
+        }
         expect(tree.face_of(prim) == face.id, "face", face.id.value,
                "has another name in the tree");
         const std::uint32_t leaf = tree.leaf_of(prim);
@@ -215,11 +251,10 @@ private:
         const std::array<Vec3f, 3> corners_m = block_triangle(tree.block(leaf / kBlockFaces), lane);
         expect(tree.side(leaf / kBlockFaces).errors[lane] == error, "face", face.id.value,
                "has another error in the tree");
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            expect(corners_m[i] == forest_.position_of(face.corners[i]), "face", face.id.value,
-                   "has another corner in the tree");
-        }
+        expect(corners_m == known_m, "face", face.id.value, "has another corner in the tree");
+        expect(standing == VertexForest::Standing::shown ||
+                   (tree.side(leaf / kBlockFaces).outdated >> lane & 1U) != 0,
+               "face", face.id.value, "may stand for removed faces and counts as the surface");
     }
 
     const VertexForest& forest_;

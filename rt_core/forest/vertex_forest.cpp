@@ -3,6 +3,8 @@
 #include "rt_core/forest/vertex_forest.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/math/rounding.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -42,6 +44,27 @@ void set_row(BlockGeometry& star, std::uint32_t row, const Vec3f& position_m) no
     }
 }
 
+Aabb box_of(const std::array<Vec3f, 3>& corners_m) noexcept
+{
+    Aabb box;
+    for (const Vec3f& corner : corners_m)
+    {
+        box.add(corner);
+    }
+    return box;
+}
+
+std::uint32_t position_hash(const Vec3f& position_m) noexcept
+{
+    std::uint32_t hash = 0;
+    for (const float coordinate : position_m)
+    {
+        hash = (hash ^ std::bit_cast<std::uint32_t>(coordinate)) * 0x9E37'79B9U;
+        hash ^= hash >> 15U;
+    }
+    return hash;
+}
+
 std::uint32_t next_corner(std::uint32_t place, std::uint32_t by) noexcept
 {
     TACTUS_ASSERT(place < 3);
@@ -52,11 +75,12 @@ std::uint32_t next_corner(std::uint32_t place, std::uint32_t by) noexcept
 
 VertexForest::VertexForest(const Arena& arena, FacePool& faces, ModelId owner, std::uint32_t least,
                            const ModelCounts& counts, PageSlots slots, PageTable& pages,
-                           AbTree& tree) noexcept
+                           AbTree& tree, const EditedSurface* edits) noexcept
     : counts_(counts)
     , slots_(slots)
     , pages_(&pages)
     , tree_(&tree)
+    , edits_(edits)
     , pool_(&faces)
     , faces_(faces.faces())
     , owner_(owner.value)
@@ -139,7 +163,7 @@ VertexForest::SplitOutcome VertexForest::split(RecordId id, const VsplitRecord& 
     {
         return SplitOutcome::inconsistent;
     }
-    if (pool_->left_for(share_) < 2)
+    if (pool_->left_for(share_) < 2 + promised_to_edits())
     {
         return SplitOutcome::full;
     }
@@ -238,8 +262,12 @@ std::uint32_t VertexForest::next_of(PrimId prim) const noexcept
 ErrorCode VertexForest::error_of(PrimId prim) const noexcept
 {
     const std::uint32_t leaf = tree_->leaf_of(prim);
-    return leaf != AbTree::kNoLeaf ? tree_->side(leaf / kBlockFaces).errors[leaf % kBlockFaces]
-                                   : error_in(faces_[prim.value].id, faces_[prim.value].state);
+    if (leaf != AbTree::kNoLeaf)
+    {
+        return tree_->side(leaf / kBlockFaces).errors[leaf % kBlockFaces];
+    }
+    const ActiveFace& active = faces_[prim.value];
+    return is_added(active.id) ? ErrorCode{0} : error_in(active.id, active.state);
 }
 
 ErrorCode VertexForest::error_before(const VsplitRecord& record) const noexcept
@@ -276,7 +304,9 @@ Vec3f VertexForest::corner_position(PrimId prim, std::uint32_t place) const noex
     const std::uint32_t leaf = tree_->leaf_of(prim);
     if (leaf == AbTree::kNoLeaf)
     {
-        return position_of(faces_[prim.value].corners[place]);
+        const ActiveFace& active = faces_[prim.value];
+        return is_added(active.id) ? edits_->added(active.id).corners_m[place]
+                                   : position_of(active.corners[place]);
     }
     const BlockGeometry& block = tree_->block(leaf / kBlockFaces);
     const std::size_t row = block.corners[place][leaf % kBlockFaces];
@@ -292,6 +322,13 @@ ChangedFace VertexForest::describe(PrimId prim) const noexcept
     {
         return change;
     }
+    if (is_added(change.face))
+    {
+        const AddedFace& added = edits_->added(change.face);
+        change.bucket = added.bucket;
+        change.corners_m = added.corners_m;
+        return change;
+    }
     if (counts_.is_base(change.face))
     {
         change.bucket = slots_.base.faces[change.face.value].bucket;
@@ -304,6 +341,8 @@ ChangedFace VertexForest::describe(PrimId prim) const noexcept
     }
     change.error = error_of(prim);
     change.corners_m = corners_of(prim);
+    change.is_outdated =
+        standing_of(face(prim), change.error, change.corners_m) == Standing::outdated;
     return change;
 }
 
@@ -364,14 +403,21 @@ PrimId VertexForest::add_face(const ActiveFace& face, ErrorCode error, std::uint
     const PrimId prim = pool_->take(share_, owner_, face);
     active_max_ = active_faces() > active_max_ ? active_faces() : active_max_;
     hash_ += hash_of(face, error);
-    tree_->insert({prim, face.id, bucket, error, corners_m});
+    const Standing standing = standing_of(face, error, corners_m);
+    if (standing != Standing::hidden)
+    {
+        tree_->insert({prim, face.id, bucket, error, corners_m, standing == Standing::outdated});
+    }
     return prim;
 }
 
 void VertexForest::remove_face(PrimId prim) noexcept
 {
     hash_ -= hash_of(faces_[prim.value], error_of(prim));
-    tree_->remove(prim);
+    if (!tree_->face_of(prim).is_none())
+    {
+        tree_->remove(prim);
+    }
     pool_->give_back(share_, owner_, prim);
 }
 
@@ -383,7 +429,154 @@ void VertexForest::move_corner(FanFace fan, VertexId to, const Vec3f& position_m
     face.corners[fan.place] = to;
     face.state = state;
     hash_ += hash_of(face, error);
-    tree_->move_corner(fan.prim, fan.place, position_m, error);
+    if (!has_removed())
+    {
+        tree_->move_corner(fan.prim, fan.place, position_m, error);
+        return;
+    }
+    const bool was_hidden = tree_->face_of(fan.prim).is_none();
+    std::array<Vec3f, 3> corners_m = corners_of(fan.prim);
+    corners_m[fan.place] = position_m;
+    const Standing standing = standing_of(face, error, corners_m);
+    if (standing == Standing::hidden)
+    {
+        if (!was_hidden)
+        {
+            tree_->remove(fan.prim);
+        }
+    }
+    else if (was_hidden)
+    {
+        tree_->insert(describe(fan.prim));
+    }
+    else
+    {
+        tree_->move_corner(fan.prim, fan.place, position_m, error, standing == Standing::outdated);
+    }
+}
+
+void VertexForest::apply(const SurfaceEdit& edit) noexcept
+{
+    TACTUS_ASSERT(edits_ != nullptr);
+    // First of all, while the boxes in the tree are those of the last refit.
+    outdate_near(edit.removed_m);
+    for (const FaceId id : edit.removed)
+    {
+        const PrimId prim = find(id);
+        if (is_added(id))
+        {
+            remove_face(prim);
+        }
+        else if (!prim.is_none() && is_final(faces_[prim.value]))
+        {
+            tree_->remove(prim); // From now on the face is hidden.
+        }
+    }
+    for (const AddedFace& added : edit.added)
+    {
+        // The corners' hashes serve as vertices, for the hash of the state.
+        ActiveFace active{edits_->id_of(added), {}, FaceState::base()};
+        for (std::size_t corner = 0; corner < 3; ++corner)
+        {
+            active.corners[corner] = VertexId{position_hash(added.corners_m[corner])};
+        }
+        const PrimId prim = pool_->take(share_, owner_, active);
+        active_max_ = active_faces() > active_max_ ? active_faces() : active_max_;
+        hash_ += hash_of(active, 0);
+        tree_->insert({prim, active.id, added.bucket, 0, added.corners_m});
+    }
+}
+
+/// Marks the coarse faces as outdated that may stand for faces in the box.
+void VertexForest::outdate_near(const Aabb& removed_m) noexcept
+{
+    StaticVector<TreeRef, kTreeStack> stack;
+    if (!tree_->root().is_none())
+    {
+        stack.push_back(tree_->root());
+    }
+    while (!stack.empty())
+    {
+        const TreeRef ref = stack.pop_back();
+        if (ref.is_block())
+        {
+            outdate_in_block(ref.index(), removed_m);
+            continue;
+        }
+        const AbNode& node = tree_->node(ref.index());
+        for (std::uint32_t children = node.mask; children != 0; children &= children - 1)
+        {
+            const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+            if (do_meet(node.box_of(child), removed_m))
+            {
+                stack.push_back(node.children[child]);
+            }
+        }
+    }
+}
+
+void VertexForest::outdate_in_block(std::uint32_t block, const Aabb& removed_m) noexcept
+{
+    std::uint32_t outdated = 0;
+    const BlockSide& side = tree_->side(block);
+    for (std::uint32_t lanes = tree_->block(block).faces; lanes != 0; lanes &= lanes - 1)
+    {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+        const ActiveFace& active = faces_[side.prims[lane].value];
+        if (!is_added(active.id) && !is_final(active) &&
+            do_meet(box_of(block_triangle(tree_->block(block), lane))
+                        .inflated(error_m(side.errors[lane])),
+                    removed_m))
+        {
+            outdated |= 1U << lane;
+        }
+    }
+    tree_->outdate(block, outdated);
+}
+
+bool VertexForest::is_outdated(PrimId prim) const noexcept
+{
+    const std::uint32_t leaf = tree_->leaf_of(prim);
+    return leaf == AbTree::kNoLeaf
+               ? has_removed() && describe(prim).is_outdated
+               : (tree_->side(leaf / kBlockFaces).outdated >> (leaf % kBlockFaces) & 1U) != 0;
+}
+
+bool VertexForest::may_be_removed_near(const Vec3f& point_m, double reach_m) const noexcept
+{
+    return has_removed() &&
+           edits_->may_be_removed_near({point_m, point_m}, round_up_to_float(reach_m));
+}
+
+/// Standing of an active source face; of an added one it is `shown`.
+VertexForest::Standing
+VertexForest::standing_of(const ActiveFace& face, ErrorCode error,
+                          const std::array<Vec3f, 3>& corners_m) const noexcept
+{
+    if (!has_removed() || is_added(face.id))
+    {
+        return Standing::shown;
+    }
+    if (is_final(face))
+    {
+        return edits_->is_removed(face.id) ? Standing::hidden : Standing::shown;
+    }
+    return edits_->may_be_removed_near(box_of(corners_m), error_m(error)) ? Standing::outdated
+                                                                          : Standing::shown;
+}
+
+/// True if no record changes the source face further.
+bool VertexForest::is_final(const ActiveFace& face) const noexcept
+{
+    std::uint32_t& next = face.state.is_base()
+                              ? slots_.base.next[face.id.value]
+                              : pages_->resident(face.state.record()).next[face.state.place()];
+    return load_next(next) == kNextExact;
+}
+
+float VertexForest::error_m(ErrorCode error) const noexcept
+{
+    return error_in_quanta(error) * tree_->quantum_m();
 }
 
 } // namespace tactus

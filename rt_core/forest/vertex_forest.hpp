@@ -5,6 +5,7 @@
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/forest/edited_surface.hpp"
 #include "rt_core/forest/face_pool.hpp"
 #include "rt_core/records/changed_face.hpp"
 #include "rt_core/spm/page_table.hpp"
@@ -23,6 +24,10 @@ namespace tactus
 /// The cut is dependency-closed: a record is split only if each fan face is in the state that the
 /// record expects, and merged only if each star face is in the state that the record gave it.
 /// Otherwise both refuse, with nothing changed.
+///
+/// Edits remove and add faces. A face in its final state that edits removed is *hidden*: it is
+/// active in the forest, but not in the tree. A coarse face near removed ones is *outdated*
+/// (ChangedFace). An added face is in forest and tree for as long as it is part of the surface.
 ///
 /// Haptic thread only. Cost: one look-up in the index list and one small write to the tree for each
 /// face of the star.
@@ -49,10 +54,10 @@ public:
     /// Enters the base mesh of `slots` into the tree, unless there is none (begin() sets it later)
     /// or the arena is measuring. The tree must be empty, of the same owner, and its pool must have
     /// a prim for each face of `faces`. `least` faces are reserved, or as many as are free; the
-    /// base mesh must fit.
+    /// base mesh must fit. `edits` outlives the forest; null for a model that can't be edited.
     VertexForest(const Arena& arena, FacePool& faces, ModelId owner, std::uint32_t least,
-                 const ModelCounts& counts, PageSlots slots, PageTable& pages,
-                 AbTree& tree) noexcept;
+                 const ModelCounts& counts, PageSlots slots, PageTable& pages, AbTree& tree,
+                 const EditedSurface* edits = nullptr) noexcept;
 
     /// Reserves faces in the pool for a forest that has none, neither active nor reserved. False,
     /// with nothing changed, if the pool has no room.
@@ -86,6 +91,21 @@ public:
     /// Redoes the record's collapse. False, with nothing changed, if another record refined a star
     /// face further.
     [[nodiscard]] bool try_merge(RecordId id) noexcept TACTUS_NONBLOCKING;
+
+    /// Makes the faces of an edit go and come, once EditedSurface has taken it. The tree must be
+    /// refitted, before it and afterwards.
+    void apply(const SurfaceEdit& edit) noexcept TACTUS_NONBLOCKING;
+    /// True if a face was hidden or outdated.
+    [[nodiscard]] bool has_removed() const noexcept
+    {
+        return edits_ != nullptr && edits_->has_removed();
+    }
+    /// True if the prim's face is outdated (ChangedFace).
+    [[nodiscard]] bool is_outdated(PrimId prim) const noexcept TACTUS_NONBLOCKING;
+    /// True if removed source faces may lie within `reach_m` of a point: the faces that a merge
+    /// would leave there may be outdated.
+    [[nodiscard]] bool may_be_removed_near(const Vec3f& point_m,
+                                           double reach_m) const noexcept TACTUS_NONBLOCKING;
 
     /// The first record that must be split before this one; none if all are split.
     [[nodiscard]] RecordId
@@ -144,6 +164,28 @@ private:
                                  std::array<PrimId, kMaxStarFaces>& star) const noexcept;
     [[nodiscard]] ErrorCode error_in(FaceId face,
                                      FaceState state) const noexcept TACTUS_NONBLOCKING;
+    /// Part that a source face has in the surface after edits.
+    enum class Standing : std::uint8_t
+    {
+        shown,
+        outdated,
+        hidden,
+    };
+    [[nodiscard]] Standing standing_of(const ActiveFace& face, ErrorCode error,
+                                       const std::array<Vec3f, 3>& corners_m) const noexcept;
+    [[nodiscard]] bool is_final(const ActiveFace& face) const noexcept;
+    [[nodiscard]] bool is_added(FaceId face) const noexcept
+    {
+        return edits_ != nullptr && edits_->is_added(face);
+    }
+    [[nodiscard]] float error_m(ErrorCode error) const noexcept;
+    /// Number of added faces that may still come.
+    [[nodiscard]] std::uint32_t promised_to_edits() const noexcept
+    {
+        return edits_ == nullptr ? 0U : edits_->room() - edits_->added();
+    }
+    void outdate_near(const Aabb& removed_m) noexcept TACTUS_NONBLOCKING;
+    void outdate_in_block(std::uint32_t block, const Aabb& removed_m) noexcept;
     [[nodiscard]] Vec3f corner_position(PrimId prim,
                                         std::uint32_t place) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] PrimId add_face(const ActiveFace& face, ErrorCode error, std::uint32_t bucket,
@@ -156,6 +198,7 @@ private:
     PageSlots slots_;
     PageTable* pages_;
     AbTree* tree_;
+    const EditedSurface* edits_;
     FacePool* pool_;
     std::span<ActiveFace> faces_; ///< Faces of the whole pool.
     std::uint32_t owner_;

@@ -14,6 +14,7 @@
 #include "rt_core/frame/refinement.hpp"
 #include "rt_core/frame/resting.hpp"
 #include "rt_core/frame/scene_changes.hpp"
+#include "rt_core/frame/surface_edits.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 
@@ -91,6 +92,7 @@ private:
     FrameParts parts_;
     FrameAccount account_;
     SceneChanges changes_;
+    SurfaceEdits edits_;
     Neighbours neighbours_;
     PairShedding shedding_;
     Loading loading_;

@@ -49,6 +49,7 @@ struct FrameAccount
         faults = FrameFault::none;
         scene.walks = 0;
         scene.refused = {};
+        scene.edits_refused = {};
     }
 };
 

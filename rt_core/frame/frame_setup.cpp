@@ -75,7 +75,7 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     std::uint64_t faces = setup.for_streamed_models.faces;
     for (const ModelSource& source : setup.models)
     {
-        faces += source.capacities.faces;
+        faces += source.capacities.faces + source.capacities.edit_faces;
     }
     if (faces > kMaxPoolFaces)
     {
@@ -92,7 +92,8 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
     {
         const auto* mesh = std::get_if<MeshCore>(&tool.core);
         if (mesh != nullptr && (mesh->model.value >= setup.models.size() ||
-                                is_streamed_model(setup, mesh->model.value)))
+                                is_streamed_model(setup, mesh->model.value) ||
+                                setup.models[mesh->model.value].capacities.edit_faces > 0))
         {
             return FrameRefusal::unknown_model;
         }
@@ -107,6 +108,10 @@ std::optional<FrameRefusal> find_refusal(const FrameSetup& setup) noexcept
         if (!ModelHeader::parse(source.header))
         {
             return FrameRefusal::header_refused;
+        }
+        if (source.capacities.edit_faces > kMaxAddedFaces)
+        {
+            return FrameRefusal::too_many_faces;
         }
     }
     return std::nullopt;

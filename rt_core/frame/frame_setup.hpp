@@ -72,7 +72,8 @@ enum class FrameRefusal : std::uint8_t
     /// SceneCapacities allow.
     too_many,
     too_many_faces,   ///< The models bring more than kMaxPoolFaces.
-    unknown_model,    ///< A named model does not exist, or a tool names a streamed one.
+    unknown_model,    ///< A named model does not exist, or a tool names a streamed one or one that
+                      ///< can be edited.
     shared_model,     ///< A tool names a model that an object shows.
     header_refused,   ///< A model's header did not pass its checks.
     base_refused,     ///< A model's base mesh did not pass its checks.

@@ -35,14 +35,14 @@ std::uint32_t blocks_for(std::uint32_t faces) noexcept
 ModelCapacities with_faces(ModelCapacities capacities, std::uint32_t faces) noexcept
 {
     capacities.faces = faces;
-    capacities.blocks = blocks_for(faces);
+    capacities.blocks = blocks_for(faces + capacities.edit_faces);
     capacities.nodes = capacities.blocks / 2 + 2 * AbTree::kReserve;
     return capacities;
 }
 
 TreeCapacities tree_part(const ModelCapacities& capacities) noexcept
 {
-    return {capacities.faces, capacities.blocks, capacities.nodes};
+    return {capacities.faces + capacities.edit_faces, capacities.blocks, capacities.nodes};
 }
 
 /// Divisor of a model's capacity beyond its base mesh that gives its reserved part, unless the
@@ -100,7 +100,7 @@ std::uint32_t divide(std::uint32_t all, std::span<ModelCapacities> models,
 
 ModelPools::ModelPools(Arena& arena, const ModelCapacities& all, std::uint32_t models) noexcept
     : scratch(arena, all.pages)
-    , faces(arena, all.faces)
+    , faces(arena, all.faces + all.edit_faces)
     , tree(arena, tree_part(all))
     , slots{arena.take<Page>(all.pages), arena.take<IndexPage>(all.index_pages),
             BaseMesh{arena.take<Vec3f>(all.base_cells), arena.take<BaseFace>(all.base_cells),
@@ -121,6 +121,7 @@ ModelCapacities sum_of(std::span<const ModelCapacities> each) noexcept
         sum.faces += one.faces;
         sum.blocks += one.blocks;
         sum.nodes += one.nodes;
+        sum.edit_faces += one.edit_faces;
         sum.base_cells += one.base_cells;
     }
     return sum;
@@ -165,7 +166,12 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
     TACTUS_ASSERT(!headers.empty());
     TACTUS_ASSERT(headers.size() <= kMaxModels);
     const auto count = static_cast<std::uint32_t>(headers.size());
-    std::ranges::fill(capacities, ModelCapacities{});
+    for (ModelCapacities& one : capacities)
+    {
+        const std::uint32_t edit_faces = one.edit_faces;
+        one = ModelCapacities{};
+        one.edit_faces = edit_faces;
+    }
     const auto chunks_of = [&](std::size_t i)
     { return std::max(headers[i].counts().chunks(), 1U); };
     const auto index_pages_of = [&](std::size_t i)
@@ -196,7 +202,7 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
             const ModelCounts counts = headers[i].counts();
             const std::uint32_t most = std::max(counts.face_ids(), kMinFaces) + kMinFaces - 1;
             capacities[i] = with_faces(capacities[i], counts.base_faces + std::min(more, most));
-            sum += capacities[i].faces;
+            sum += capacities[i].faces + capacities[i].edit_faces;
         }
         return sum <= kMaxPoolFaces && required_bytes(headers, capacities) <= bytes;
     };
@@ -246,8 +252,9 @@ Model::Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& mo
             {kept_for(header, capacities).pages, kept_for(header, capacities).index_pages}, header,
             slots, pages, kernels)
     , tree(shared.tree, id, tree_part(kept_for(header, capacities)), header.quantum_m(), kernels)
-    , forest(arena, shared.faces, id, kept_for(header, capacities).faces, header.counts(), slots,
-             pages, tree)
+    , edits(arena, header, model_slots.base.faces.empty() ? 0U : capacities.edit_faces)
+    , forest(arena, shared.faces, id, kept_for(header, capacities).faces + edits.room(),
+             header.counts(), slots, pages, tree, &edits)
     , refiner(forest, pages, tree, shared.scratch, header.quantum_m())
     , is_streamed_model(model_slots.base.faces.empty())
     , stage(is_streamed_model ? ModelStage::known : ModelStage::resident)
@@ -440,13 +447,30 @@ ModelOutput Model::output() const noexcept
     const std::uint32_t index_pages = cache.index_pages_used();
     return {{pages.used(), pages_used_max, capacities.pages},
             {index_pages, index_pages, capacities.index_pages},
-            {forest.active_faces(), forest.active_faces_max(), capacities.faces},
+            {forest.active_faces(), forest.active_faces_max(), capacities.faces + edits.room()},
             {tree.blocks_used(), tree.blocks_used_max(), capacities.blocks},
             {tree.nodes_used(), tree.nodes_used_max(), capacities.nodes},
             forest.refined_records(),
             forest.state_hash(),
             is_complete(),
-            stage};
+            stage,
+            {edits.added(), edits.added_max(), edits.room()},
+            edits.revision()};
+}
+
+std::optional<EditRefusal> Model::edit(const SurfaceEdit& change, WorkCounters& work,
+                                       FrameFault& faults) noexcept
+{
+    const std::optional<EditRefusal> refusal = edits.take(change);
+    if (!refusal)
+    {
+        forest.apply(change);
+        // An edit is made whole. Its work is not the frame's choice, so no stage gets less for it.
+        const WorkBudget budget = work.budget;
+        refit(work, faults);
+        work.budget = budget;
+    }
+    return refusal;
 }
 
 void Model::refit(WorkCounters& work, FrameFault& faults) noexcept

@@ -8,6 +8,7 @@
 #include "rt_core/base/result.hpp"
 #include "rt_core/cache/cache_pool.hpp"
 #include "rt_core/cache/chunk_cache.hpp"
+#include "rt_core/forest/edited_surface.hpp"
 #include "rt_core/forest/face_pool.hpp"
 #include "rt_core/forest/vertex_forest.hpp"
 #include "rt_core/records/frame_output.hpp"
@@ -37,6 +38,9 @@ struct ModelCapacities
     /// waits for their records. They are evicted once nothing waits and none of their records is
     /// refined. Then the two fronts agree to a page (figure 5 of the 3DIM 2005 paper).
     bool cache_off{false};
+    /// Room for faces that edits add (EditedSurface), beside `faces`. 0: the model can't be edited,
+    /// as a streamed one never can. Kept by try_plan().
+    std::uint32_t edit_faces{0};
     /// Memory for base meshes of streamed models, in cells of one face and one vertex. Only used in
     /// FrameSetup::for_streamed_models.
     std::uint32_t base_cells{0};
@@ -83,6 +87,7 @@ struct ModelPools
 /// meshes and a few pages do not fit. Tries up to about 50 sizes, each in time linear in the
 /// models.
 /// - `headers` and `capacities` have the same size, 1 to kMaxModels (asserted).
+/// - `capacities` come with the rooms for edits, `edit_faces`, and otherwise unused.
 [[nodiscard]] bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes,
                             std::size_t cache_bytes,
                             std::span<ModelCapacities> capacities) noexcept;
@@ -122,6 +127,10 @@ struct Model
     Model(Model&&) = delete;
     Model& operator=(Model&&) = delete;
     ~Model() = default;
+
+    /// Takes an edit of the surface. A refused one changes nothing.
+    [[nodiscard]] std::optional<EditRefusal> edit(const SurfaceEdit& change, WorkCounters& work,
+                                                  FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// Adds faces that did not fit before to the tree, if possible, and refits the tree.
     void refit(WorkCounters& work, FrameFault& faults) noexcept TACTUS_NONBLOCKING;
@@ -191,6 +200,7 @@ struct Model
     PageTable pages;
     ChunkCache cache;
     AbTree tree;
+    EditedSurface edits;
     VertexForest forest;
     Refiner refiner;
     std::uint32_t pages_used_max{0};

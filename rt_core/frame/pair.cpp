@@ -500,6 +500,10 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
     const double rounding = rounding_m();
     lower_m_ = std::max(0.0, surface.answer.lower_m * pose.scale - rounding);
     upper_m_ = surface.answer.upper_m * pose.scale + rounding;
+    if (std::exchange(is_in_doubt_, false) && !(surface.answer.lower_m > 0.0))
+    {
+        is_joined_ = false;
+    }
     is_joined_ = is_joined_ || lower_m_ > parts_.tool->radius_m();
     was_answered_ = found == FrameFault::none && is_model_here_;
     answered_revision_ = revision();
@@ -558,9 +562,50 @@ void Pair::lose_model() noexcept
     TACTUS_ASSERT(mesh_ == nullptr);
     TACTUS_ASSERT(of_object_.closure.target.is_none());
     is_model_here_ = false;
+    forget_refinement();
+}
+
+void Pair::forget_refinement() noexcept
+{
     for (RefineMemory& memory : refine_memories_)
     {
         memory.is_known = false;
+    }
+}
+
+void Pair::follow(const SurfaceEdit& edit) noexcept
+{
+    region_of_interest_.doubt();
+    forget_refinement();
+    const Tool& tool = *parts_.tool;
+    if (!is_joined_ || !tool.is_held())
+    {
+        return;
+    }
+    const PlacedCore& core = region_of_interest_.core();
+    const auto quantum_m = static_cast<double>(parts_.model.model->header.quantum_m());
+    const double radius_m = tool.radius_m() / parts_.object->pose.scale;
+    const double entered_m = std::max(radius_m * (1.0 - kTouchShare) - 2.0 * quantum_m, 0.0);
+    const auto may_enter = [&](const Triangle& face)
+    {
+        const ClosestPoint closest = closest_point_on_triangle(core.center(), face);
+        return std::sqrt(closest.distance_sq) <= core.radius() + entered_m;
+    };
+    const auto enters = [&](const AddedFace& added)
+    {
+        const Triangle face = to_triangle(added.corners_m);
+        return may_enter(face) && core.closest(face).distance <= entered_m;
+    };
+    if (mesh_ != nullptr)
+    {
+        // Its query tells whether it meets the surface.
+        is_in_doubt_ = is_in_doubt_ ||
+                       std::ranges::any_of(edit.added, [&](const AddedFace& added)
+                                           { return may_enter(to_triangle(added.corners_m)); });
+    }
+    else
+    {
+        is_joined_ = std::ranges::none_of(edit.added, enters);
     }
 }
 
@@ -672,7 +717,7 @@ void Pair::report_core(WorkCounters& work) noexcept
 /// Tightens the answer of a cut search by the last answer and the motion since.
 void Pair::narrow(DistanceAnswer& answer) const noexcept
 {
-    if (answer.kind == AnswerKind::bounded && region_of_interest_.has_known())
+    if (answer.kind == AnswerKind::bounded && region_of_interest_.has_bounds())
     {
         const DistanceAnswer known = region_of_interest_.from_motion();
         answer.upper_m = std::min(answer.upper_m, known.upper_m);

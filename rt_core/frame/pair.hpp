@@ -113,6 +113,8 @@ public:
     [[nodiscard]] const PairParts& parts() const noexcept { return parts_; }
     [[nodiscard]] std::uint32_t tool() const noexcept { return parts_.tool_index; }
     [[nodiscard]] std::uint32_t object() const noexcept { return parts_.object_number; }
+    /// Model of the object.
+    [[nodiscard]] ModelId model() const noexcept { return parts_.model.id; }
 
     /// Updates the pair for the poses of tool and object in this frame.
     void place(const Budgets& budgets) noexcept TACTUS_NONBLOCKING;
@@ -179,6 +181,9 @@ public:
     /// True if the object's model may be removed in spite of the pair: no contact is expected soon,
     /// and the model's box is out of the tool's reach.
     [[nodiscard]] bool can_spare_model() const noexcept TACTUS_NONBLOCKING;
+    /// Forgets what was known of the object's surface, which an edit has changed. A tool that an
+    /// added face enters ignores the object until both are apart.
+    void follow(const SurfaceEdit& edit) noexcept TACTUS_NONBLOCKING;
     /// Makes the pair answer from the model's box, since the model leaves. Closures must have been
     /// released.
     void lose_model() noexcept TACTUS_NONBLOCKING;
@@ -232,6 +237,7 @@ private:
     };
 
     [[nodiscard]] std::uint32_t revision() const noexcept;
+    void forget_refinement() noexcept;
     void look() noexcept;
     void find_priority() noexcept;
     [[nodiscard]] PairMotion motion() const noexcept;
@@ -286,6 +292,7 @@ private:
     Priority priority_;
     bool is_shed_{false};
     bool is_joined_{true};
+    bool is_in_doubt_{false}; ///< True if an added face may meet the mesh tool.
     bool is_model_here_{true}; ///< True if the object's model is resident in this frame.
     ObjectPose stood_;         ///< Pose of the object in the last frame.
     ProxyMemory body_;

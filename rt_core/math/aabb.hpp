@@ -59,4 +59,17 @@ struct Aabb
     }
 };
 
+/// True if the boxes have a point in common.
+[[nodiscard]] constexpr bool do_meet(const Aabb& a, const Aabb& b) noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis])
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
 } // namespace tactus

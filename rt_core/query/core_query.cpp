@@ -115,12 +115,14 @@ public:
         {
             return true;
         }
+        const std::uint32_t open = side.coarse != 0 ? lanes_above(side, tolerance_) : 0U;
         for (std::uint32_t lanes = block.faces; lanes != 0; lanes &= lanes - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
             const bool is_exact = (side.coarse >> lane & 1U) == 0;
             const ErrorCode code = is_exact ? ErrorCode{0} : side.errors[lane];
-            test_face({index, lane, code, static_cast<double>(error_in_quanta(code)) * quantum_});
+            test_face({index, lane, code, static_cast<double>(error_in_quanta(code)) * quantum_,
+                       (open >> lane & 1U) != 0, (side.outdated >> lane & 1U) != 0});
             if (met_ >= enough_)
             {
                 open_ = std::min(open_, 0.0);
@@ -159,13 +161,10 @@ private:
         std::uint32_t block;
         std::uint32_t lane;
         ErrorCode error;
-        double error_m; ///< Error of the face, in metres.
+        double error_m;   ///< Error of the face, in metres.
+        bool is_open;     ///< True if the face does not count as the surface.
+        bool is_outdated; ///< True if its corners may not be on the surface.
     };
-
-    [[nodiscard]] bool is_coarse(const Face& face) const noexcept
-    {
-        return face.error > tolerance_;
-    }
 
     /// Cheap bounds on a face's distance, with the closest points of a convex body in reach.
     struct Measure
@@ -199,7 +198,7 @@ private:
     void test_face(const Face& face) noexcept
     {
         const double worth = worth_m();
-        const bool is_left = is_coarse(face);
+        const bool is_left = face.is_open;
         const Measure known = measure_within(face, worth + face.error_m, !is_left);
         double lower = known.bounds.lower - face.error_m;
         if (is_left && lower <= worth && lower < open_)
@@ -213,7 +212,7 @@ private:
         {
             return;
         }
-        if (face.error != 0)
+        if (face.error != 0 && !face.is_outdated)
         {
             bound_by_corners(face, known.bounds);
         }

@@ -73,7 +73,7 @@ void FaceDecision::bound_queued_open() noexcept
         {
             leave_open(tool, face);
         }
-        if (gap_m < findings_.bound_m())
+        if (gap_m < findings_.bound_m() && !is_outdated(pair))
         {
             findings_.take_upper(corners_apart(tool.triangle, face.triangle));
         }
@@ -320,6 +320,11 @@ double FaceDecision::tool_error_m(const FacePair& pair) const noexcept
 {
     const ErrorCode error = question_.tool.side(pair.tool_block).errors[pair.tool_lane];
     return static_cast<double>(error_in_quanta(error)) * tool_quantum_m_ * kRoundedUp;
+}
+
+bool FaceDecision::is_outdated(const FacePair& pair) const noexcept
+{
+    return (question_.object.side(pair.block).outdated >> pair.lane & 1U) != 0;
 }
 
 double FaceDecision::object_error_m(const FacePair& pair) const noexcept

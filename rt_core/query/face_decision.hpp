@@ -78,6 +78,8 @@ private:
     [[nodiscard]] FarthestEnds farthest_ends() const noexcept;
     void measure_ends() noexcept;
     [[nodiscard]] double tool_error_m(const FacePair& pair) const noexcept;
+    /// True if the corners of the pair's object face may not be on the surface.
+    [[nodiscard]] bool is_outdated(const FacePair& pair) const noexcept;
     [[nodiscard]] double object_error_m(const FacePair& pair) const noexcept;
     [[nodiscard]] double tolerated_m(const FacePair& pair) const noexcept;
     [[nodiscard]] Triangle tool_triangle(const FacePair& pair) const noexcept;

@@ -372,8 +372,11 @@ private:
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
             const float error = error_in_quanta(side.errors[lane]);
-            corner_ = std::min(corner_, bounds.corner[lane]);
-            limit_ = std::min(limit_, corner_);
+            if ((side.outdated >> lane & 1U) == 0)
+            {
+                corner_ = std::min(corner_, bounds.corner[lane]);
+                limit_ = std::min(limit_, corner_);
+            }
             // The rounding of this difference is less than the kernel's margin.
             const float lower = bounds.lower[lane] - error;
             if (static_cast<double>(lower) < unproven_)

@@ -26,8 +26,11 @@ struct ChangedFace
     FaceId face{}; ///< Lasting id of the face; none if the face is no longer active.
     /// Upper part of the face's path in the AB-Tree; never changes for a face.
     std::uint32_t bucket{0};
-    ErrorCode error{0}; ///< Code of the face's error; 0: exact.
+    ErrorCode error{0}; ///< Code of the face's error; 0: exact, unless the face is outdated.
     std::array<Vec3f, 3> corners_m{};
+    /// True for a coarse face that may stand for faces that an edit removed: it bounds distances
+    /// from below only.
+    bool is_outdated{false};
 };
 
 } // namespace tactus

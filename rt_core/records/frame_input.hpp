@@ -7,6 +7,7 @@
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/object_pose.hpp"
 #include "rt_core/records/scene_change.hpp"
+#include "rt_core/records/surface_edit.hpp"
 #include "rt_core/records/work_budget.hpp"
 
 #include <algorithm>
@@ -121,6 +122,8 @@ struct FrameInput
     std::span<const SceneChange> changes; ///< Applied first, in order; at most kMaxSceneChanges.
     Budgets budgets;
     std::int64_t now_ns{0}; ///< Time on the clock of ObjectPose::arrival_ns.
+    /// Edits of models' surfaces, applied after `changes`, in order; at most kMaxEditsPerFrame.
+    std::span<const SurfaceEdit> edits{};
 };
 
 /// Stages of a frame, in order; each has a time in the report.

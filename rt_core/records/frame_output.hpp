@@ -8,6 +8,7 @@
 #include "rt_core/records/mesh_report.hpp"
 #include "rt_core/records/queue_event.hpp"
 #include "rt_core/records/scene_change.hpp"
+#include "rt_core/records/surface_edit.hpp"
 #include "rt_core/records/work_counters.hpp"
 
 #include <array>
@@ -129,6 +130,8 @@ struct SceneOutput
     std::uint32_t walks{0}; ///< Searches of all objects for those near a tool; at most kBroadWalks.
     /// Changes that were refused, in the order of ChangeRefusal.
     std::array<std::uint32_t, kChangeRefusals> refused{};
+    /// Edits of surfaces that were refused, in the order of EditRefusal.
+    std::array<std::uint32_t, kEditRefusals> edits_refused{};
 };
 
 /// Present use of one pool, in slots.
@@ -166,6 +169,8 @@ struct ModelOutput
     std::uint64_t state_hash{0}; ///< Hash of the active faces: equal cuts have equal hashes.
     bool is_static{false};       ///< Refined fully: nothing is left to load, refine or refit.
     ModelStage stage{ModelStage::resident};
+    PoolUse added;                  ///< Faces that edits added.
+    std::uint32_t edit_revision{0}; ///< Number of the model's last edit; 0: none.
 };
 
 /// Results of a frame: spans into the frame's own memory, valid until the next run.

@@ -192,7 +192,9 @@ bool Coarsener::is_needless(const VsplitRecord& record,
     for_each_question(requests, [&](const RefineQuestion& question)
                       { least = std::min(least, question.tolerance); });
     return least != 0 && std::ranges::max(record.error) <= least &&
-           forest_->error_before(record) <= least;
+           forest_->error_before(record) <= least &&
+           !forest_->may_be_removed_near(
+               record.position_m, static_cast<double>(error_in_quanta(record.reach)) * quantum_m_);
 }
 
 /// Distance that the tools have to go before all of them leave the record behind.

@@ -561,7 +561,8 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             static_cast<double>(error_in_quanta(record.error[place])) * quantum_m_;
         coarse.lanes |= record.error[place] != 0 ? 1U << place : 0U;
     }
-    coarse.lanes &= star.geometry.faces;
+    const std::uint32_t outdated = outdated_in(star);
+    coarse.lanes = (coarse.lanes | outdated) & star.geometry.faces;
     if (coarse.lanes == 0)
     {
         return;
@@ -593,7 +594,7 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             return;
         }
         stars_left_ -= question.surface != nullptr && is_own ? 1U : 0U;
-        coarse.lanes = lanes_above(question.tolerance, all, record.error);
+        coarse.lanes = lanes_above(question.tolerance, all, record.error) | outdated;
         if (coarse.lanes == 0)
         {
             return;
@@ -622,6 +623,19 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             push({excess[place], star.prims[place], FaceState::after(id, place)}, own);
         }
     }
+}
+
+/// Places of a star's outdated faces, one bit each.
+std::uint32_t Refiner::outdated_in(const VertexForest::StarGeometry& star) const noexcept
+{
+    std::uint32_t outdated = 0;
+    for (std::uint32_t lanes = forest_->has_removed() ? star.geometry.faces : 0; lanes != 0;
+         lanes &= lanes - 1)
+    {
+        const auto place = static_cast<std::uint32_t>(std::countr_zero(lanes));
+        outdated |= forest_->is_outdated(star.prims[place]) ? 1U << place : 0U;
+    }
+    return outdated;
 }
 
 /// Writes lower bounds on distances minus errors of a star's coarse faces.

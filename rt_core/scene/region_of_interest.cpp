@@ -28,7 +28,7 @@ void RegionOfInterest::look(const ToolSpec& tool, const ToolPlacement& placement
     approach_m_ = (pose.rotation.transpose() * placement.approach_m) / pose.scale;
     const double awake_m = kKeepFactor * reach_m_ + approach_m_.norm();
     motion_m_ = has_known_ ? core_.motion_since(known_core_) : 0.0;
-    is_asleep_ = has_known_ && known_.lower_m - motion_m_ > awake_m;
+    is_asleep_ = has_bounds() && known_.lower_m - motion_m_ > awake_m;
 }
 
 void RegionOfInterest::remember(const DistanceAnswer& answer) noexcept
@@ -39,6 +39,7 @@ void RegionOfInterest::remember(const DistanceAnswer& answer) noexcept
     known_core_ = core_;
     motion_m_ = 0.0;
     has_known_ = true;
+    is_doubted_ = false;
 }
 
 bool RegionOfInterest::looks_ahead() const noexcept

@@ -71,6 +71,7 @@ void FrameReplay::run_once(CacheState caches, std::size_t frames)
     StageTimer timer;
     std::uint64_t allocations = 0;
     std::uint64_t bytes_before = 0;
+    std::size_t next_edit = 0;
     for (std::size_t i = 0; i < std::min(run_.lead_in + frames, run_.goals_m.size()); ++i)
     {
         const bool is_counted = i >= run_.lead_in;
@@ -78,6 +79,11 @@ void FrameReplay::run_once(CacheState caches, std::size_t frames)
         if (i == run_.lead_in)
         {
             bytes_before = rig.chunk_loader().counters().coded_bytes;
+        }
+        for (; next_edit < run_.edits.size() && run_.edits[next_edit].frame == i; ++next_edit)
+        {
+            const EditContent& edit = run_.edits[next_edit].edit;
+            rig.edit({ModelId{0}, edit.revision, edit.removed, edit.added, edit.removed_m});
         }
         prepare(rig, is_counted ? caches : CacheState::warm);
         FrameOutput output;
@@ -126,6 +132,10 @@ void FrameReplay::count(const FrameOutput& output)
     answers_.push_back(output.pairs[0]);
     ++work_.frames;
     work_.counters += output.work;
+    for (const std::uint32_t times : output.scene.edits_refused)
+    {
+        work_.edits_refused += times;
+    }
     work_.contacts += is_in_contact ? 1 : 0;
     work_.uncertified += is_in_contact && kind != AnswerKind::exact ? 1 : 0;
     work_.open += kind == AnswerKind::exact || kind == AnswerKind::separated ? 0 : 1;

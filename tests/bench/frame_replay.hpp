@@ -9,6 +9,7 @@
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/shared/frame_rig.hpp"
+#include "transport/edit_content.hpp"
 
 #include <array>
 #include <cstdint>
@@ -26,6 +27,13 @@ enum class CacheState : std::uint8_t
     warmed, ///< Evicted, then warmed, as a loop does in the wait before its deadline.
 };
 
+/// An edit of the surface before a frame.
+struct TimedEdit
+{
+    std::size_t frame{0};
+    EditContent edit;
+};
+
 /// Path of one tool over one model, with the budgets of the frames.
 struct FrameRun
 {
@@ -36,6 +44,7 @@ struct FrameRun
     Budgets budgets;
     /// Models that share the pools, all of the same scene; rig.objects show them.
     std::uint32_t models{1};
+    std::vector<TimedEdit> edits{}; ///< Edits of the first model, by frame.
 
     [[nodiscard]] std::size_t counted() const { return goals_m.size() - lead_in; }
 };
@@ -54,6 +63,7 @@ struct FrameWork
     std::uint64_t coded_bytes{0}; ///< Bytes received over the link.
     std::uint64_t contacts{0};    ///< Frames in contact.
     std::uint64_t uncertified{0}; ///< Frames in contact without an exact answer.
+    std::uint64_t edits_refused{0};
     std::uint64_t open{0};        ///< Frames with neither an exact nor a separated answer.
     ModelOutput model;            ///< State after the last frame.
 

@@ -27,7 +27,7 @@ std::vector<Suite> all_suites()
 {
     return {counts_suite(),    frame_suite(), error_time_suite(), skip_suite(),   growth_suite(),
             peers_suite(),     force_suite(), encoder_suite(),    table1_suite(), table2_suite(),
-            stability_suite(), scene_suite(), starve_suite(),     stream_suite(), worst_suite()};
+            stability_suite(), scene_suite(), starve_suite(),     stream_suite(), worst_suite(),   edits_suite()};
 }
 
 std::optional<Suite> find_suite(const std::string& name)

@@ -26,6 +26,7 @@ struct Suite
 };
 
 [[nodiscard]] Suite counts_suite();
+[[nodiscard]] Suite edits_suite();
 [[nodiscard]] Suite encoder_suite();
 [[nodiscard]] Suite error_time_suite();
 [[nodiscard]] Suite force_suite();

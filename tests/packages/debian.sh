@@ -83,8 +83,8 @@ holds libtactus-dev "$libraries"/libtactus_{core,transport,platform,host,c}.{a,s
     "$libraries"/pkgconfig/tactus-{core,transport,platform,host,c}.pc \
     "$libraries/cmake/Tactus/TactusConfig.cmake" usr/include/tactus/tactus.h \
     usr/include/tactus/rt_core/frame/frame.hpp usr/share/man/man3/tactus.h.3.gz
-holds tactus-host usr/bin/{spm_{build,inspect,publish},tactus-keys} \
-    usr/share/man/man1/spm_{build,inspect,publish}.1.gz \
+holds tactus-host usr/bin/{spm_{build,inspect,publish},tactus,tactus-keys} \
+    usr/share/man/man1/{spm_{build,inspect,publish},tactus}.1.gz \
     usr/lib/systemd/system/spm_{publish,view}.service etc/default/spm_{publish,view}
 holds tactus-controller usr/bin/hrtc usr/share/man/man1/hrtc.1.gz etc/tactus/hrtc.toml \
     usr/lib/systemd/system/hrtc.service usr/lib/sysctl.d/61-tactus.conf \

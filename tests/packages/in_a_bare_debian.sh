@@ -52,6 +52,8 @@ called '--system daemon-reload'
 # Programs, from a file and over DDS; the module.
 spm_build --shape torus --faces 20000 -o torus.spm 2>&1
 spm_inspect torus.spm | grep -x 'mesh .*20000 faces.*' || fail 'spm_inspect'
+tactus inspect torus.spm | grep -x 'mesh .*20000 faces.*' || fail 'tactus inspect'
+tactus touch torus.spm --no-view --duration 1 >touch.log 2>&1 || fail "tactus: $(<touch.log)"
 code=0
 hrtc deadline-test --allow-no-rt --transport file --model torus.spm --duration 2 --load none \
     --report test.json >test.log 2>&1 || code=$?
@@ -116,7 +118,7 @@ called 'stop hrtc.service'
 called 'stop spm_publish.service'
 called '--system daemon-reload'
 [[ -z $(find /run/services -name '*.service') ]] || fail 'a service runs on'
-[[ -z $(ls /usr/bin/hrtc /usr/bin/spm_* 2>/dev/null) ]] || fail 'programs are left'
+[[ -z $(ls /usr/bin/hrtc /usr/bin/spm_* /usr/bin/tactus* 2>/dev/null) ]] || fail 'programs are left'
 grep -qx 'model = "torus"' /etc/tactus/hrtc.toml || fail 'removal takes the configuration along'
 mkdir -p /var/log/tactus
 quietly purge.log dpkg --purge "${packages[@]}"

@@ -10,6 +10,7 @@ import textwrap
 
 COLUMN = 30  # First column of the descriptions in --help.
 MARK = ".\\\" From --help."  # Line before the options in a section of a page.
+COMMANDS = {"hrtc": ("doctor", "load"), "tactus": ("touch",)}  # Each with a section of its own.
 HEAD = re.compile(r"  (?P<name>-[\w,-]+|[A-Z]+)(?P<kind>(?: (?:TEXT|FLOAT|U?INT)(?::\S+(?: \.\. \S+)?)?)?"
                   r"(?: \.\.\.)?)(?P<rules>(?: REQUIRED)?(?: Needs:(?: -[\w-]+)+)?"
                   r"(?: Excludes:(?: (?:-[\w-]+|[A-Z]+\b))+)?)(?: +(?P<text>\S.*))?$")
@@ -108,10 +109,10 @@ def replaced(page, section, body):
 def written(programs, name, page):
     groups = groups_of(help_of(programs, name))
     page = replaced(page, "OPTIONS", options_page(groups))
+    for command in COMMANDS.get(name, ()):
+        page = replaced(page, f"{name.upper()} {command.upper()}",
+                        options_page(groups_of(help_of(programs, name, command))))
     if name == "hrtc":
-        for command in ("doctor", "load"):
-            page = replaced(page, f"HRTC {command.upper()}",
-                            options_page(groups_of(help_of(programs, name, command))))
         own, missing = beside(groups_of(help_of(programs, name, "deadline-test")), groups)
         names = ", ".join(sorted(option.rsplit(",", 1)[-1] for option in missing if "-" in option))
         body = paragraph(f"It has the options above, except {names}, and:")
@@ -135,7 +136,8 @@ def faults_of_header(header, page):
 def main(arguments):
     programs, pages, header = (pathlib.Path(argument) for argument in arguments[:3])
     faults = list(faults_of_header(header, (pages / "tactus.h.3").read_text()))
-    for name in ("spm_build", "spm_inspect", "spm_publish", "spm_view", "tactus-keys", "hrtc"):
+    for name in ("spm_build", "spm_inspect", "spm_publish", "spm_view", "tactus", "tactus-keys",
+                 "hrtc"):
         path = pages / f"{name}.1"
         page = written(programs, name, path.read_text())
         if page.count("\n.TP\n\\fB") < 5:

@@ -62,7 +62,8 @@ export PKG_CONFIG_LIBDIR=$libraries/pkgconfig:$folder/sysroot/usr/share/pkgconfi
 build() {
     await cmake -S "$source" --preset deb -B build \
         -DCMAKE_TOOLCHAIN_FILE="$folder/toolchain.cmake" \
-        && await ninja -C build hrtc spm_build spm_inspect spm_publish spm_view tactus-keys
+        && await ninja -C build hrtc spm_build spm_inspect spm_publish spm_view tactus \
+            tactus-keys
 }
 build >build.log 2>&1 || fail "the build for $architecture failed, see $folder/build.log: $(grep \
     -m 1 -iE 'error' build.log || tail -n 1 build.log)"

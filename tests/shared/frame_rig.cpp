@@ -116,6 +116,10 @@ std::vector<ModelSource> FrameRig::plan_pools(const FrameSetup& setup,
         headers.push_back(ModelHeader::parse(line.served.header).value());
     }
     std::vector<ModelCapacities> capacities(headers.size());
+    for (const ObjectSpec& object : setup.objects)
+    {
+        capacities[object.model.value].edit_faces = options.edit_faces;
+    }
     if (!try_plan_pools(setup, headers, options.pool_bytes, options.cache_bytes, capacities))
     {
         give_up("the pools are too small for " + lines_[0].served.name);
@@ -192,6 +196,13 @@ void FrameRig::change(SceneChange change)
     changes_.push_back(change);
 }
 
+void FrameRig::edit(const SurfaceEdit& edit)
+{
+    SurfaceEdit& kept = edits_.emplace_back(edit);
+    kept.removed = removed_.emplace_back(edit.removed.begin(), edit.removed.end());
+    kept.added = added_.emplace_back(edit.added.begin(), edit.added.end());
+}
+
 FrameOutput FrameRig::step_without_delivery(std::span<const ToolState> tools,
                                             const Budgets& budgets, StageMark mark)
 {
@@ -202,6 +213,9 @@ FrameOutput FrameRig::step_without_delivery(std::span<const ToolState> tools,
         recorder_->add(given, output);
     }
     changes_.clear();
+    edits_.clear();
+    removed_.clear();
+    added_.clear();
     validate();
     return output;
 }

@@ -10,6 +10,7 @@
 #include "transport/loopback/loopback_link.hpp"
 #include "transport/store/store_link.hpp"
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -33,6 +34,8 @@ struct RigOptions
     std::uint32_t chunk_loader_steps_per_frame{4};
     std::int64_t period_ns{1'000'000};
     bool cache_off{false};
+    /// Room for faces that edits add, of each model that an object shows at the start.
+    std::uint32_t edit_faces{0};
     bool static_when_it_fits{false};
     Prediction prediction{Prediction::automatic};
     double force_tolerance_n{0.0};
@@ -70,6 +73,8 @@ public:
     void place_object(const ObjectPose& pose, std::size_t object = 0);
     /// Adds a change for the next frame; the pose of an added object is that of its model frame.
     void change(SceneChange change);
+    /// Adds an edit for the next frame; its spans are copied.
+    void edit(const SurfaceEdit& edit);
     /// One frame without a step of the transport side before it.
     FrameOutput step_without_delivery(const std::vector<Vec3>& goals_m, const Budgets& budgets,
                                       StageMark mark);
@@ -86,7 +91,7 @@ public:
     /// Input of the next frame with these tools, for callers that run it themselves.
     [[nodiscard]] FrameInput input(std::span<const ToolState> tools, const Budgets& budgets) const
     {
-        return {tools, changes_, budgets, now_ns_};
+        return {tools, changes_, budgets, now_ns_, edits_};
     }
     [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
     [[nodiscard]] Frame& frame() { return *frame_; }
@@ -128,6 +133,9 @@ private:
     std::vector<ObjectPose> poses_;    ///< Poses, one for each place of an object.
     std::vector<ModelId> shown_;       ///< Models that they show.
     std::vector<SceneChange> changes_; ///< Changes of the next frame.
+    std::vector<SurfaceEdit> edits_;   ///< Edits of the next frame, with their faces.
+    std::deque<std::vector<FaceId>> removed_;
+    std::deque<std::vector<AddedFace>> added_;
     std::vector<ToolState> tools_;
 };
 

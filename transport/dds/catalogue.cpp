@@ -147,6 +147,7 @@ void Catalogue::refresh()
             {
                 if (!try_add({name, scene, hash_from(entry.model_hash), entry.server_epoch,
                               entry.model, entry.faces, entry.header_bytes, entry.base_bytes,
+                              std::min(entry.edit_room, kMaxAddedFaces),
                               participants_->writer_of(info.publication_handle)
                                   .value_or(ParticipantId{}),
                               info.publication_handle}))

@@ -40,6 +40,7 @@ public:
         std::uint32_t faces{0};
         std::uint32_t header_bytes{0};
         std::uint32_t base_bytes{0};
+        std::uint32_t edit_room{0}; ///< Slots for faces that edits add; 0: no edits.
         ParticipantId server{};
         std::uint64_t writer{0}; ///< Handle of the server's writer.
         /// True if any program ended the offer in DDS; refresh() checks whether its server is gone.

@@ -134,6 +134,7 @@ ServedModel DdsClient::served(HeaderSearch& search)
     model.name = search.offer().name;
     model.hash = search.offer().hash;
     model.server_epoch = search.offer().server_epoch;
+    model.edit_room = search.offer().edit_room;
     model.header = std::move(search.header());
     model.link =
         std::make_unique<DdsLink>(*exchange_, catalogue_, search.offer(),

@@ -65,7 +65,7 @@ std::string name_of(const tactus_v5_Wanted& wanted)
 Result<std::unique_ptr<DdsServer>, Refusal> DdsServer::create(const DomainChoice& domain,
                                                               std::vector<PublishedModel> models,
                                                               Log log, std::string scene,
-                                                              Party party)
+                                                              Party party, Editors editors)
 {
     if (models.size() > kMaxModels)
     {
@@ -89,7 +89,7 @@ Result<std::unique_ptr<DdsServer>, Refusal> DdsServer::create(const DomainChoice
     }
     std::unique_ptr<DdsServer> server(new DdsServer(std::move(joined).value(), std::move(served),
                                                     std::move(log), std::move(scene)));
-    if (auto done = server->open_endpoints(); !done)
+    if (auto done = server->open_endpoints(std::move(editors)); !done)
     {
         return done.error();
     }
@@ -133,6 +133,10 @@ void DdsServer::step()
     ++steps_;
     has_more_work_ = false;
     objects_->step();
+    if (edits_ != nullptr)
+    {
+        edits_->step();
+    }
     take_requests(Clock::now() + kRequestsMax);
     const auto now = Clock::now();
     if (now - last_looked_ >= kLookForGone)
@@ -180,7 +184,7 @@ std::vector<DdsServer::Subscriber> DdsServer::subscribers() const
     return list;
 }
 
-Result<Done, Refusal> DdsServer::open_endpoints()
+Result<Done, Refusal> DdsServer::open_endpoints(Editors editors)
 {
     std::vector<ContentHash> hashes;
     for (const ModelPieces& model : models_)
@@ -208,7 +212,44 @@ Result<Done, Refusal> DdsServer::open_endpoints()
     waitset_ = Entity(dds_create_waitset(domain_.participant()));
     dds_set_status_mask(wanted_.handle, DDS_DATA_AVAILABLE_STATUS);
     dds_waitset_attach(waitset_.get(), wanted_.handle, 0);
+    if (auto done = open_edits(std::move(editors)); !done)
+    {
+        return done.error();
+    }
     announce(); // Last, so that a controller that sees the announcement finds all else in place.
+    return Done{};
+}
+
+/// Opens the topics of edits if a model can be edited.
+Result<Done, Refusal> DdsServer::open_edits(Editors editors)
+{
+    std::vector<EditPublisher::Model> edited;
+    bool has_room = false;
+    for (const ModelPieces& each : models_)
+    {
+        const PublishedModel& model = each.model();
+        if (model.edit_room > kMaxAddedFaces)
+        {
+            return Refusal{fmt::format("model '{}' has room for {} added faces; at most {} are "
+                                       "allowed",
+                                       model.name, model.edit_room, kMaxAddedFaces)};
+        }
+        edited.push_back({each.store().header(), model.edit_room});
+        has_room = has_room || model.edit_room > 0;
+    }
+    if (!has_room)
+    {
+        return Done{};
+    }
+    auto edits = EditPublisher::create(domain_, std::move(edited), std::move(editors));
+    if (!edits)
+    {
+        return edits.error();
+    }
+    edits_ = std::move(edits).value();
+    const std::int32_t requests = edits_->requests_handle();
+    dds_set_status_mask(requests, DDS_DATA_AVAILABLE_STATUS);
+    dds_waitset_attach(waitset_.get(), requests, 0);
     return Done{};
 }
 
@@ -228,6 +269,7 @@ void DdsServer::announce()
         entry.faces = fields.source_faces;
         entry.header_bytes = static_cast<std::uint32_t>(store.header_bytes().size());
         entry.base_bytes = static_cast<std::uint32_t>(store.coded_bytes({ContentKind::base, 0}));
+        entry.edit_room = models_[i].model().edit_room;
         dds_write(catalogue_.handle, &entry); // A failed write is repeated in the next second.
     }
     last_announced_ = Clock::now();

@@ -4,6 +4,7 @@
 
 #include "transport/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
+#include "transport/dds/edit_publisher.hpp"
 #include "transport/dds/model_pieces.hpp"
 #include "transport/dds/object_publisher.hpp"
 #include "transport/dds/subscription.hpp"
@@ -48,10 +49,11 @@ public:
     /// Announces the models. Refused for more than kMaxModels, an unreadable base mesh, a header
     /// too long for the wire, and as by Domain::join(). `log` gets, at a limited rate, a line for
     /// each controller that arrives or leaves, each failure and each refusal. `scene` is a valid
-    /// name (unchecked) for all objects of the server together; empty: no scene.
+    /// name (unchecked) for all objects of the server together; empty: no scene. `editors` may
+    /// request edits of the models with a room for them.
     [[nodiscard]] static Result<std::unique_ptr<DdsServer>, Refusal>
     create(const DomainChoice& domain, std::vector<PublishedModel> models, Log log,
-           std::string scene = {}, Party party = Party::server);
+           std::string scene = {}, Party party = Party::server, Editors editors = {});
 
     /// Waits for a request or the next step() that is due, at most `timeout`. Signals do not end
     /// it.
@@ -67,6 +69,8 @@ public:
     [[nodiscard]] const std::vector<ModelPieces>& models() const noexcept { return models_; }
     /// Publisher of the objects of these models.
     [[nodiscard]] ObjectPublisher& objects() noexcept { return *objects_; }
+    /// Publisher of the edits of these models; null if none of them can be edited.
+    [[nodiscard]] EditPublisher* edits() noexcept { return edits_.get(); }
     /// Epoch, which identifies this run of the server to controllers.
     [[nodiscard]] std::uint64_t epoch() const noexcept { return epoch_; }
     /// Domain for further topics of the same program; lives as long as the server.
@@ -106,7 +110,8 @@ private:
 
     DdsServer(Domain domain, std::vector<ModelPieces> models, Log log, std::string scene);
 
-    [[nodiscard]] Result<Done, Refusal> open_endpoints();
+    [[nodiscard]] Result<Done, Refusal> open_endpoints(Editors editors);
+    [[nodiscard]] Result<Done, Refusal> open_edits(Editors editors);
     void announce();
     void take_requests(Clock::time_point end);
     void on_request(const ControllerId& controller, const tactus_v5_Wanted& wanted);
@@ -138,6 +143,7 @@ private:
     Endpoint wanted_;
     Entity waitset_;
     std::unique_ptr<ObjectPublisher> objects_; ///< Valid after create().
+    std::unique_ptr<EditPublisher> edits_;     ///< Null if no model can be edited.
     std::vector<Client> clients_;
     std::vector<std::shared_ptr<Process>> processes_;
     std::size_t looked_at_{0}; ///< First index into clients_ for the next look_for_gone().

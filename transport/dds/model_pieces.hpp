@@ -21,6 +21,8 @@ struct PublishedModel
 {
     std::string name; ///< Valid and unique on this server; not checked.
     ModelStore store;
+    /// Slots for faces that edits add, at most kMaxAddedFaces; 0: the model can't be edited.
+    std::uint32_t edit_room{0};
 };
 
 /// Pieces of a published model, as sent: index pages, chunks, and the parts of header and base

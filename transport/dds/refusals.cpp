@@ -49,6 +49,12 @@ std::string reason_of(Refused reason, std::uint32_t number)
         return "telemetry with an invalid name or number, or of too many controllers";
     case Refused::rate:
         return "more pieces requested in a second than a server accepts from one process";
+    case Refused::edit:
+        return fmt::format("model {}: an edit with wrong numbers or damaged bytes", number);
+    case Refused::edit_request:
+        return fmt::format("model {}: a request of an edit with impossible values, of a model "
+                           "without edits, or of a controller that may not edit",
+                           number);
     case Refused::not_served:
     case Refused::controller:
         break;
@@ -63,7 +69,7 @@ const std::array<const char*, kRefusedKinds>& refused_names() noexcept
     static constexpr std::array<const char*, kRefusedKinds> names{
         "identity",    "object_number", "model_number", "object_name", "object_material",
         "object_pose", "not_served",    "model_name",   "model_room",  "controller",
-        "request",     "telemetry",     "rate"};
+        "request",     "telemetry",     "rate",         "edit",        "edit_request"};
     return names;
 }
 

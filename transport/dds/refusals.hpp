@@ -38,8 +38,12 @@ enum class Refused : std::uint8_t
     /// Telemetry or refinement state with invalid names or numbers, or of too many controllers.
     telemetry,
     rate, ///< More pieces requested in a second than a server accepts from one process.
+    edit, ///< Edit that can't be: wrong numbers, damaged bytes, or a model without edits.
+    /// Request of an edit with impossible values, of a model without edits, or of a controller that
+    /// may not edit.
+    edit_request,
 };
-inline constexpr std::size_t kRefusedKinds = 13;
+inline constexpr std::size_t kRefusedKinds = 15;
 
 /// Refusals of one participant.
 struct PeerRefusals

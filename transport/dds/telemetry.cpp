@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #include "transport/dds/telemetry.hpp"
 
+#include "transport/base/printable.hpp"
 #include "transport/dds/newest.hpp"
+#include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/model_name.hpp"
 
@@ -12,7 +14,9 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "tactus.h"
 
@@ -160,6 +164,36 @@ ModelTelemetry from_wire(const tactus_v5_ModelTelemetry& wire)
     return model;
 }
 
+tactus_v5_ObjectTelemetry to_wire(const ObjectTelemetry& object)
+{
+    tactus_v5_ObjectTelemetry wire = {};
+    wire.server_epoch = object.server_epoch;
+    wire.object = object.object;
+    wire.number = object.number;
+    object.name.copy(static_cast<char*>(wire.name), kMaxNameBytes);
+    std::memcpy(wire.model_hash, object.model.data(), object.model.size());
+    wire.pose = dds::to_wire(object.pose);
+    return wire;
+}
+
+/// Object in a sample; none if its name, number or pose is invalid.
+std::optional<ObjectTelemetry> from_wire(const tactus_v5_ObjectTelemetry& wire)
+{
+    const Pose told = dds::from_wire(wire.pose);
+    const auto pose = checked_pose(told);
+    // Rounding may place an object just beyond kPoseReachMax_m.
+    const bool is_sound = pose || pose.error() == PoseRefusal::translation;
+    const std::string_view name = text_of(wire.name);
+    if (!is_sound || wire.number >= kMaxObjects || !std::ranges::all_of(name, is_printable))
+    {
+        return std::nullopt;
+    }
+    ObjectTelemetry object{wire.server_epoch, wire.object, wire.number,
+                           std::string(name), {},          pose ? pose.value() : told};
+    std::memcpy(object.model.data(), wire.model_hash, object.model.size());
+    return object;
+}
+
 bool all_finite(std::span<const double> numbers)
 {
     return std::ranges::all_of(numbers, [](double value) { return std::isfinite(value); });
@@ -212,9 +246,10 @@ std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
     news.id = controller_of(sample);
     news.name = text_of(sample.controller_name);
     news.serial = sample.serial;
-    const bool is_in_bounds = sample.tools._length <= kMaxTools &&
-                              sample.pairs._length <= kMaxPairs &&
-                              sample.models._length <= kMaxShownModels;
+    const bool is_in_bounds =
+        sample.tools._length <= kMaxTools && sample.pairs._length <= kMaxPairs &&
+        sample.models._length <= kMaxShownModels && sample.objects._length <= kMaxShownObjects &&
+        sample.sweep_begin <= sample.sweep_end && sample.sweep_end <= kMaxObjects;
     if (!is_valid_name(news.name) || !is_in_bounds)
     {
         return std::nullopt;
@@ -249,6 +284,17 @@ std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
             return std::nullopt;
         }
     }
+    news.objects.sweep_begin = sample.sweep_begin;
+    news.objects.sweep_end = sample.sweep_end;
+    for (std::uint32_t i = 0; i < sample.objects._length; ++i)
+    {
+        auto object = from_wire(sample.objects._buffer[i]);
+        if (!object)
+        {
+            return std::nullopt;
+        }
+        news.objects.objects.push_back(*std::move(object));
+    }
     return news;
 }
 
@@ -279,11 +325,12 @@ TelemetryWriter::TelemetryWriter(const ControllerId& controller, std::string con
     TACTUS_ASSERT(models_.size() <= kMaxShownModels);
 }
 
-void TelemetryWriter::write(const Telemetry& telemetry)
+void TelemetryWriter::write(const Telemetry& telemetry, const ObjectsTelemetry& objects)
 {
     TACTUS_ASSERT(telemetry.tool_count <= kMaxTools);
     TACTUS_ASSERT(telemetry.pair_count <= kMaxPairs);
     TACTUS_ASSERT(telemetry.model_count == models_.size());
+    TACTUS_ASSERT(objects.objects.size() <= kMaxShownObjects);
     std::array<tactus_v5_PairTelemetry, kMaxPairs> pairs{};
     std::array<tactus_v5_ToolTelemetry, kMaxTools> tools{};
     std::array<tactus_v5_ModelTelemetry, kMaxShownModels> models{};
@@ -299,6 +346,11 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     {
         models[i] = to_wire(models_[i], telemetry.models[i]);
     }
+    std::vector<tactus_v5_ObjectTelemetry> shown;
+    for (const ObjectTelemetry& object : objects.objects)
+    {
+        shown.push_back(to_wire(object));
+    }
     tactus_v5_Telemetry sample = {};
     std::memcpy(sample.controller, controller_.data(), controller_.size());
     controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
@@ -307,6 +359,10 @@ void TelemetryWriter::write(const Telemetry& telemetry)
     sample.tools = {telemetry.tool_count, telemetry.tool_count, tools.data(), false};
     sample.pairs = {telemetry.pair_count, telemetry.pair_count, pairs.data(), false};
     sample.models = {telemetry.model_count, telemetry.model_count, models.data(), false};
+    sample.sweep_begin = objects.sweep_begin;
+    sample.sweep_end = objects.sweep_end;
+    const auto count = static_cast<std::uint32_t>(shown.size());
+    sample.objects = {count, count, shown.data(), false};
     // A failed write counts as a lost sample; the next one replaces it.
     dds_write(writer_.handle, &sample);
 }

@@ -30,8 +30,12 @@ public:
     create(const Domain& domain, std::string controller_name, std::vector<ModelIdentity> models);
 
     /// Sends a sample to all readers; never waits. `telemetry.model_count` must equal the number of
-    /// models, and its counts of tools and pairs must fit their arrays (asserted).
-    void write(const Telemetry& telemetry);
+    /// models, its counts of tools and pairs must fit their arrays, and there may be at most
+    /// kMaxShownObjects objects (asserted).
+    void write(const Telemetry& telemetry, const ObjectsTelemetry& objects = {});
+
+    /// True if there is a reader.
+    [[nodiscard]] bool is_watched() const { return is_matched(writer_); }
 
     /// Number of samples sent.
     [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
@@ -55,6 +59,7 @@ struct WatchedController
     std::uint64_t serial{0};
     std::vector<ModelIdentity> models; ///< Identities of Telemetry::models, in order.
     Telemetry telemetry;
+    ObjectsTelemetry objects;
     std::uint64_t writer{0}; ///< DDS handle of the writer of the last sample.
     /// True if any program ended this controller's instance in DDS; poll() then checks its writer.
     bool is_disputed{false};

@@ -4,6 +4,7 @@
 
 #include "rt_core/limits.hpp"
 #include "transport/content_hash.hpp"
+#include "transport/edit_coding.hpp"
 #include "transport/front.hpp"
 #include "transport/telemetry.hpp"
 
@@ -33,9 +34,12 @@ static_assert(tactus_v5_max_name_bytes == kMaxNameBytes);
 static_assert(tactus_v5_max_tools == kMaxTools);
 static_assert(tactus_v5_max_models == kMaxShownModels);
 static_assert(tactus_v5_max_pairs == kMaxPairs);
+static_assert(tactus_v5_max_shown_objects == kMaxShownObjects);
 static_assert(tactus_v5_max_requests == kMaxRequests);
 static_assert(tactus_v5_max_moved == kMaxMoved);
 static_assert(tactus_v5_max_payload_bytes >= kPayloadBytes);
+static_assert(tactus_v5_max_hull_vertices == kMaxHullVertices);
+static_assert(tactus_v5_max_payload_bytes >= kMaxCodedEditBytes);
 static_assert(tactus_v5_max_shape_bytes == kMaxShapeBytes);
 static_assert(tactus_v5_max_state_models == kMaxModels);
 static_assert(tactus_v5_max_state_objects == kMaxStateObjects);
@@ -129,6 +133,27 @@ bool is_honest_refinement_state(const void* sample, const dds_sample_info_t* inf
                                 context);
 }
 
+/// True if the numbers of a sample fit together; its payload is checked by EditReader.
+bool is_honest_edit(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    const auto& edit = *static_cast<const tactus_v5_Edits*>(sample);
+    const bool is_in_ranges = edit.part < edit.parts && edit.parts <= kMaxSumParts;
+    const bool is_single = edit.index < kKeptEdits && edit.parts == 1 && edit.to == edit.from + 1 &&
+                           edit.to != 0 && edit.index == edit.to % kKeptEdits;
+    const bool is_sum = edit.from == 0 && edit.index == kKeptEdits + edit.part;
+    return is_of_its_server(edit, info, context) &&
+           (edit.model < kMaxModels || refuse(info, context, Refused::model_number, edit.model)) &&
+           ((is_in_ranges && (is_single || is_sum)) ||
+            refuse(info, context, Refused::edit, edit.model));
+}
+
+bool is_honest_edit_request(const void* sample, const dds_sample_info_t* info, void* context)
+{
+    const auto& request = *static_cast<const tactus_v5_EditRequests*>(sample);
+    return request.server_epoch == participants_of(context).own_epoch() &&
+           is_of_its_controller(request, info, context);
+}
+
 const TopicTraits& traits_of(Topic topic)
 {
     // All topics are keep-last, so that no writer waits for a reader. The depths of `wanted` and
@@ -136,7 +161,7 @@ const TopicTraits& traits_of(Topic topic)
     // samples that one stuck writer of several holds back; dropped pieces are requested again.
     // Readers have no other limits, since a full reader would block all reception of its process;
     // the filters bound their instances.
-    static const std::array<TopicTraits, 7> traits{{
+    static const std::array<TopicTraits, 9> traits{{
         {"tactus/v5/catalogue", &tactus_v5_CatalogueEntry_desc, is_honest_entry, true, true, false,
          1},
         {"tactus/v5/objects", &tactus_v5_ObjectRecord_desc, is_honest_record, true, false, false,
@@ -149,6 +174,9 @@ const TopicTraits& traits_of(Topic topic)
          1},
         {"tactus/v5/refinement_state", &tactus_v5_RefinementState_desc, is_honest_refinement_state,
          false, true, true, 1},
+        {"tactus/v5/edits", &tactus_v5_Edits_desc, is_honest_edit, true, false, false, 1},
+        {"tactus/v5/edit_requests", &tactus_v5_EditRequests_desc, is_honest_edit_request, false,
+         false, false, 64},
     }};
     return traits[static_cast<std::size_t>(topic)];
 }

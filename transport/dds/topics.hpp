@@ -30,6 +30,10 @@ inline constexpr std::size_t kPayloadBytes = 60'000;
 /// Maximum bytes of a header and of a base mesh that a controller fetches.
 inline constexpr std::size_t kMaxHeaderBytes = std::size_t{8} << 20U;
 inline constexpr std::size_t kMaxBaseBytes = std::size_t{1} << 20U;
+/// Number of single edits of a model that its server keeps for readers that are late.
+inline constexpr std::uint32_t kKeptEdits = 256;
+/// Maximum number of parts of the sum of a model's edits: four million removed faces.
+inline constexpr std::uint32_t kMaxSumParts = 4'096;
 
 enum class Topic : std::uint8_t
 {
@@ -39,7 +43,9 @@ enum class Topic : std::uint8_t
     wanted,
     chunks,
     telemetry,
-    front
+    front,
+    edits,
+    edit_requests,
 };
 
 /// Creates a writer with the topic's quality of service (docs/protocol.md). A write waits at most 5

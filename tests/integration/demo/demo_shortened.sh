@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# demo_shortened.sh SETUP BUILD_DIR [--scene | --view]: the README's demo with the programs of this
-# build, for a second: it ends well, prints the summary, names the report, and leaves no process.
+# demo_shortened.sh SETUP BUILD_DIR [--scene | --view | --carve]: the README's demo with the
+# programs of this build, for a second: it ends well, prints the summary, names the report, and
+# leaves no process.
 set -euo pipefail
 readonly setup=$1
 export TACTUS_BUILD_DIR=$2
@@ -32,6 +33,8 @@ elif [[ "$more" == --scene ]]; then
     texts+=('scene.gltf: 200 objects of 20 models' 'touches     200 objects of 20 models'
         'scene       200 objects, at most 200')
     [[ $(grep -c '^tool  ' "$output") == 2 ]] || fail 'not two hands'
+elif [[ "$more" == --carve ]]; then
+    texts+=('carving     ' 'mm^3 removed')
 fi
 for text in "${texts[@]}"; do
     grep -qF -- "$text" "$output" || fail "no '$text' in what the demo printed"
@@ -47,5 +50,5 @@ done
 # Only the demo takes a scene and a view.
 code=0
 refusal=$(unset TACTUS_BUILD_DIR && bash "$setup" bench --scene 2>&1) || code=$?
-[[ $code == 3 && "$refusal" == *"--scene and --view are for 'demo' only"* ]] \
+[[ $code == 3 && "$refusal" == *"--scene, --view and --carve are for 'demo' only"* ]] \
     || fail "bench --scene: $code, $refusal"

@@ -5,7 +5,7 @@
 # that is removed at the end together with every process that was started here.
 set -euo pipefail
 readonly build=$1/spm_build inspect=$1/spm_inspect publish=$1/spm_publish hrtc=$1/hrtc
-readonly keys=$1/tactus-keys
+readonly keys=$1/tactus-keys tactus=$1/tactus
 readonly check_report=$2 sanitizer=${3#none}
 checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 readonly checkout

@@ -19,7 +19,7 @@ SCRIPT
 exec "$publish" --domain $domain "\$@"
 SCRIPT
     chmod +x programs/*
-    for program in "$build" "$inspect"; do
+    for program in "$build" "$inspect" "$tactus"; do
         ln -s "$program" programs/
     done
     # A Python block is a document for python3.

@@ -227,6 +227,44 @@ TEST(Cut, is_face_for_face_what_the_controller_has)
     EXPECT_EQ(shown, touched);
 }
 
+TEST(Cut, has_the_faces_that_edits_left_and_added)
+{
+    const Opened opened(tactus::test::small_model(0));
+    const std::vector<RefinementStatePage> all = pages_of(records_for(opened.decoded, 0.0));
+    const auto before = cut_bytes(opened.decoded, all);
+    ASSERT_TRUE(before.has_value());
+    std::optional<FaceId> source; // Any source face.
+    Replay replay(opened.decoded);
+    ASSERT_FALSE(split_all(replay, opened.decoded, all));
+    for (std::uint32_t face = 0; face < opened.decoded.header().counts().face_ids(); ++face)
+    {
+        if (replay.is_active({face}))
+        {
+            source = FaceId{face};
+        }
+    }
+    ASSERT_TRUE(source);
+    const Triangle3 added{Corner{0.0F, 0.0F, 0.0F}, Corner{1.0F, 0.0F, 0.0F},
+                          Corner{0.0F, 1.0F, 0.0F}};
+    EditContent edit;
+    edit.revision = 1;
+    edit.removed = {*source};
+    edit.added = {
+        {3, 0, {Vec3f{0.0F, 0.0F, 0.0F}, Vec3f{1.0F, 0.0F, 0.0F}, Vec3f{0.0F, 1.0F, 0.0F}}}};
+    edit.removed_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 1.0F, 1.0F}};
+    EditState edits(opened.decoded.header().counts(), 8);
+    edits.apply(edit);
+    const auto after = cut_bytes(opened.decoded, all, &edits);
+    ASSERT_TRUE(after.has_value());
+    std::vector<Triangle3> old = read(before.value()).faces;
+    std::vector<Triangle3> shown = read(after.value()).faces;
+    ASSERT_EQ(shown.size(), old.size());
+    EXPECT_EQ(shown.back(), added);
+    shown.pop_back();
+    old.pop_back(); // The active face with the greatest id is the last one.
+    EXPECT_EQ(shown, old);
+}
+
 TEST(Cut, refuses_records_that_the_model_does_not_have_or_that_lack_what_they_depend_on)
 {
     const Opened opened(tactus::test::small_model(0));

@@ -102,6 +102,33 @@ TEST(LiveState, gathers_objects_turn_by_turn_and_forgets_those_that_went)
     EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{1}));
 }
 
+TEST(LiveState, gathers_the_objects_of_telemetry_in_the_same_way)
+{
+    LiveState sut;
+    dds::WatchedController one = told(1, "one");
+    const auto publish = [&](std::uint32_t begin, std::vector<std::uint32_t> numbers)
+    {
+        ++one.serial;
+        one.objects = {begin, begin + 2, {}};
+        for (const std::uint32_t number : numbers)
+        {
+            one.objects.objects.emplace_back().number = number;
+        }
+        sut.publish({one}, {});
+        std::vector<std::uint32_t> there;
+        for (const ObjectTelemetry& each : sut.newest()->controllers[0].shown)
+        {
+            there.push_back(each.number);
+        }
+        return there;
+    };
+    EXPECT_EQ(publish(0, {0, 1}), (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(publish(2, {3, 1}), (std::vector<std::uint32_t>{0, 1, 3}));
+    EXPECT_EQ(publish(0, {1}), (std::vector<std::uint32_t>{1, 3}));
+    sut.publish({}, {});
+    EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{})) << "it came anew";
+}
+
 TEST(StateJson, says_what_it_waits_for)
 {
     const auto shelf = std::move(ModelShelf::open({})).value();

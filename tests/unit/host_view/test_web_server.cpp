@@ -218,6 +218,52 @@ TEST_F(WebServerTest, lets_four_viewers_watch_and_goes_on_answering)
     hears.join();
 }
 
+TEST_F(WebServerTest, feeds_the_chosen_controller_and_lets_a_slow_reader_skip)
+{
+    const auto feed = [&](const std::string& query)
+    {
+        auto connection = std::make_unique<Connection>(sut_->port());
+        connection->send(fmt::format("GET /feed{} HTTP/1.1\r\nHost: {}\r\n\r\n", query, host()));
+        return connection;
+    };
+    const auto slow = feed(""); // It reads at the end only.
+    const auto two = feed("?controller=two");
+    const auto absent = feed("?controller=three");
+    dds::WatchedController one = test::told(1, "one");
+    dds::WatchedController other = test::told(2, "two");
+    for (std::uint64_t serial = 1; serial <= 20'000; ++serial)
+    {
+        one.serial = other.serial = serial;
+        live_.publish({one, other}, {});
+    }
+    const std::string read = two->read("\"serial\":20000,");
+    EXPECT_NE(read.find("\"name\":\"two\""), std::string::npos);
+    EXPECT_EQ(read.find("\"name\":\"one\""), std::string::npos);
+    EXPECT_NE(slow->read("\"serial\":20000,").find("data: {"), std::string::npos);
+    EXPECT_EQ(absent->read("no news").find("data: {"), std::string::npos);
+}
+
+TEST_F(WebServerTest, serves_pages_of_the_user_from_one_folder_only)
+{
+    const auto folder = tactus::test::small_model(0).path.parent_path();
+    const std::string file = tactus::test::small_model(0).path.filename().string();
+    EXPECT_EQ(status_of(get("/pages/" + file)), 404) << "without a folder";
+    sut_.reset();
+    WebServer::Parts parts{live_, *shelf_, 3, TACTUS_JAVASCRIPT_DIR};
+    parts.pages = folder;
+    sut_ = std::move(WebServer::start(parts, 0)).value();
+    EXPECT_EQ(status_of(get("/pages/" + file)), 200);
+    for (const char* path : {"/pages/../../../etc/passwd", "/pages/%2e%2e/%2e%2e/etc/passwd",
+                             "/pages/nothing", "/pages//etc/passwd"})
+    {
+        EXPECT_EQ(status_of(get(path)), 404) << path;
+    }
+    parts.pages = folder / file;
+    const auto refused = WebServer::start(parts, 0);
+    ASSERT_FALSE(refused);
+    EXPECT_TRUE(refused.error().text.starts_with("--pages: '")) << refused.error().text;
+}
+
 TEST_F(WebServerTest, sends_the_faces_of_a_front)
 {
     const ContentHash hash = shelf_->labels().front().hash;

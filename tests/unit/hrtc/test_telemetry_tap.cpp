@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -59,6 +60,47 @@ TEST(TelemetryTap, shows_the_newest_frame_as_the_loop_had_it)
     EXPECT_LE(telemetry.pairs[0].lower_m, telemetry.pairs[0].upper_m);
     EXPECT_EQ(telemetry.pairs[0].force_n[0], -sent_n.x()); // The whole force is on the one object.
     EXPECT_EQ(telemetry.pairs[0].force_n[2], -sent_n.z());
+}
+
+TEST(ObjectTap, leaves_a_copy_alone_until_it_is_given_back)
+{
+    LoopRigOptions options;
+    options.frames = 10;
+    LoopRig rig(options);
+    ObjectTap& sut = rig.telemetry.objects();
+    EXPECT_EQ(sut.take(), nullptr);
+    rig.loop().run();
+    const ObjectsCopy* copy = sut.take();
+    ASSERT_NE(copy, nullptr);
+    const ObjectTable& objects = rig.frame().objects();
+    EXPECT_EQ(copy->sweep_begin, 0U);
+    EXPECT_EQ(copy->sweep_end, std::min(kObjectSweep, objects.capacity()));
+    ASSERT_EQ(copy->objects.size(), 1U);
+    EXPECT_EQ(copy->objects[0].number, 0U);
+    EXPECT_EQ(copy->objects[0].pose.translation_m, objects[0].pose.translation_m);
+    sut.show(objects, {});
+    EXPECT_EQ(sut.take(), copy);
+    sut.give_back(true);
+    EXPECT_EQ(sut.take(), nullptr);
+}
+
+TEST(ObjectTap, lists_objects_of_pairs_once_and_in_turn_all_others)
+{
+    LoopRigOptions options;
+    options.frames = 1;
+    LoopRig rig(options);
+    rig.loop().run();
+    const ObjectTable& objects = rig.frame().objects();
+    std::array<PairOutput, 2> pairs{}; // Two tools near object 0.
+    ObjectTap sut;
+    sut.show(objects, pairs);
+    EXPECT_EQ(sut.take()->objects.size(), 1U);
+    sut.give_back(false);
+    sut.show(objects, pairs);
+    EXPECT_EQ(sut.take()->sweep_begin, 0U) << "the range was not sent";
+    sut.give_back(true);
+    sut.show(objects, pairs);
+    EXPECT_EQ(sut.take()->sweep_begin, objects.capacity() > kObjectSweep ? kObjectSweep : 0U);
 }
 
 TEST(TelemetryTap, sends_no_gripper_that_is_no_number)

@@ -21,6 +21,7 @@ struct ExampleFrame
     std::array<ToolState, 1> tools{ToolState{Vec3(0.5, -0.25, 2.0), 77, 3, true}};
     std::array<DeviceRecord, 1> devices{};
     std::array<SceneChange, 3> changes{};
+    std::vector<SurfaceEdit> edits{}; ///< None at first.
     Budgets budgets{11, 12, 13, 14, 15, 16, 17, 18, 19, 20};
     std::array<QueueEvent, 2> events{
         QueueEvent{{ContentKind::chunk, 1}, 2, 5, 0xF0F0, QueueEventKind::arrival},
@@ -59,7 +60,7 @@ struct ExampleFrame
     ExampleFrame(const ExampleFrame&) = delete;
     ExampleFrame& operator=(const ExampleFrame&) = delete;
 
-    [[nodiscard]] FrameInput input() const { return {tools, changes, budgets, 123'456'789}; }
+    [[nodiscard]] FrameInput input() const { return {tools, changes, budgets, 123'456'789, edits}; }
     [[nodiscard]] FrameOutput output() const
     {
         return {tool_outputs, pair_outputs, model_outputs, {}, FrameFault::none, queues, {}};

@@ -5,6 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
 namespace tactus::test
 {
 namespace
@@ -118,9 +123,13 @@ TEST(FrameCoding, holds_the_largest_frame_there_can_be)
     output.queues = {events, 0};
     output.models = models;
     FrameEncoder encoder;
+    const std::vector<FaceId> removed(kMaxEditFaces);
+    const std::vector<AddedFace> added(kMaxEditFaces);
+    const std::vector<SurfaceEdit> edits(kMaxEditsPerFrame,
+                                         SurfaceEdit{ModelId{1}, 1, removed, added, {}});
 
     const std::vector<DeviceRecord> devices(kMaxTools, ExampleFrame().devices[0]);
-    const auto coded = encoder.encode({tools, changes, {}}, output, devices);
+    const auto coded = encoder.encode({tools, changes, {}, 0, edits}, output, devices);
 
     EXPECT_EQ(coded.size(), kMaxCodedFrameBytes);
     FrameDecoder sut({kMaxTools, kMaxModels});
@@ -174,7 +183,7 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
         std::vector<unsigned> bytes;
         const char* said;
     };
-    const std::vector<Case> cases{{kFlags, {8}, "flags"},
+    const std::vector<Case> cases{{kFlags, {16}, "flags"},
                                   {kFlags, {1}, "flags"},          // The first frame has budgets.
                                   {kValid, {0xFF, 0x3F}, "flags"}, // Unknown flag.
                                   {kChanges, {0}, "1 to 64 changes"},
@@ -197,6 +206,117 @@ TEST(FrameCoding, refuses_values_that_no_frame_can_have)
         const char* fault = decode(bytes);
         ASSERT_NE(fault, nullptr) << wrong.said;
         EXPECT_NE(std::string(fault).find(wrong.said), std::string::npos) << fault;
+    }
+}
+
+/// Faces of an edit for the example's model.
+struct ExampleEdit
+{
+    std::vector<FaceId> removed{FaceId{5}, FaceId{7}};
+    std::vector<AddedFace> added{
+        {3, 4, {{{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}, {7.0F, 8.0F, 9.0F}}}}};
+    Aabb box{{-1.0F, -2.0F, -3.0F}, {10.0F, 20.0F, 30.0F}};
+
+    [[nodiscard]] SurfaceEdit view(std::uint32_t revision) const
+    {
+        return {ModelId{0}, revision, removed, added, box};
+    }
+};
+
+/// Bytes of the edits in a frame, as docs/recording.md lists them.
+CodedBytes coded_edit(std::uint32_t revision)
+{
+    CodedBytes expected;
+    expected.put(0U).put(revision).put(std::uint16_t{2}).put(std::uint16_t{1});
+    for (const float coordinate : {-1.0F, -2.0F, -3.0F, 10.0F, 20.0F, 30.0F})
+    {
+        expected.put(coordinate);
+    }
+    expected.put(5U).put(7U).put(3U).put(4U);
+    for (int i = 1; i <= 9; ++i)
+    {
+        expected.put(static_cast<float>(i));
+    }
+    return expected;
+}
+
+// Places of the edits in the example's frame.
+constexpr std::size_t kEditsAt = 4 + 1 + 8 + kToolStateBytes + 1 + (9 + kObjectPoseBytes) +
+                                 kSceneChangeBytes + (9 + kObjectSpecBytes - 4);
+
+TEST(FrameCoding, edits_follow_the_changes_and_are_given_back)
+{
+    const ExampleEdit edit;
+    ExampleFrame frame;
+    FrameEncoder plain_encoder;
+    const std::vector<std::byte> plain = frame.code(plain_encoder);
+    frame.edits = {edit.view(8), edit.view(9)};
+    FrameEncoder encoder;
+    const std::vector<std::byte> bytes = frame.code(encoder);
+    EXPECT_EQ(bytes[4], std::byte{11});
+    CodedBytes expected;
+    expected.put(std::uint8_t{2}).append(coded_edit(8).bytes()).append(coded_edit(9).bytes());
+    const auto at = bytes.begin() + kEditsAt;
+    const auto size = static_cast<std::ptrdiff_t>(expected.bytes().size());
+    ASSERT_EQ(bytes.size(), plain.size() + expected.bytes().size());
+    EXPECT_EQ(std::vector<std::byte>(at, at + size), expected.bytes());
+    EXPECT_TRUE(std::equal(at + size, bytes.end(), plain.begin() + kEditsAt));
+
+    FrameDecoder sut(kExampleShape);
+    ByteReader reader(bytes);
+    ASSERT_EQ(sut.decode(reader), nullptr);
+    const RecordedFrame copy = sut.frame();
+    ByteReader none(plain);
+    ASSERT_EQ(sut.decode(none), nullptr);
+    EXPECT_TRUE(sut.frame().input().edits.empty());
+    const FrameInput input = copy.input();
+    ASSERT_EQ(input.edits.size(), 2U);
+    for (std::uint32_t i = 0; i < 2; ++i)
+    {
+        EXPECT_EQ(input.edits[i].model, ModelId{0});
+        EXPECT_EQ(input.edits[i].revision, 8 + i);
+        EXPECT_TRUE(std::ranges::equal(input.edits[i].removed, edit.removed));
+        EXPECT_TRUE(std::ranges::equal(input.edits[i].added, edit.added));
+        EXPECT_EQ(input.edits[i].removed_m, edit.box);
+    }
+}
+
+TEST(FrameCoding, refuses_edits_that_no_frame_can_have_and_every_truncation)
+{
+    const ExampleEdit edit;
+    ExampleFrame frame;
+    frame.edits = {edit.view(1)};
+    FrameEncoder encoder;
+    const std::vector<std::byte> whole = frame.code(encoder);
+    const auto expect_refused = [&](std::size_t at, const std::vector<unsigned>& wrong)
+    {
+        std::vector<std::byte> bytes = whole;
+        for (std::size_t i = 0; i < wrong.size(); ++i)
+        {
+            bytes[at + i] = static_cast<std::byte>(wrong[i]);
+        }
+        const char* fault = decode(bytes);
+        ASSERT_NE(fault, nullptr) << at;
+        EXPECT_NE(std::string(fault).find("1 or 2 edits"), std::string::npos) << fault;
+    };
+    expect_refused(kEditsAt, {0});
+    expect_refused(kEditsAt, {3});
+    expect_refused(kEditsAt + 1, {1});               // The model.
+    expect_refused(kEditsAt + 9, {1, 4});            // 1,025 removed faces.
+    expect_refused(kEditsAt + 11, {1, 4});           // 1,025 added faces.
+    expect_refused(kEditsAt + 13, {0, 0, 128, 127}); // The box begins at infinity.
+    expect_refused(kEditsAt + 53, {0, 0, 192, 127}); // A corner is NaN.
+    for (std::size_t size = 0; size < whole.size(); ++size)
+    {
+        std::vector<std::byte> cut(whole.begin(),
+                                   whole.begin() + static_cast<std::ptrdiff_t>(size));
+        EXPECT_NE(decode(cut), nullptr) << size;
+        if (size >= 4)
+        {
+            const auto body = static_cast<std::uint32_t>(size - 4);
+            std::memcpy(cut.data(), &body, sizeof(body));
+            EXPECT_NE(decode(cut), nullptr) << size;
+        }
     }
 }
 

@@ -88,7 +88,18 @@ std::vector<Part> parts()
           model([](auto& m) { m.refined_records = 1; }), model([](auto& m) { m.state_hash = 1; }),
           model([](auto& m) { m.is_static = true; }),
           model([](auto& m) { m.stage = ModelStage::known; }),
-          model([](auto& m) { m.stage = ModelStage::wanted; })}},
+          model([](auto& m) { m.stage = ModelStage::wanted; }),
+          model([](auto& m) { m.added.capacity = 1; }),
+          model(
+              [](auto& m) {
+                  m.added = {1, 1, 2};
+              }),
+          model(
+              [](auto& m)
+              {
+                  m.added.capacity = 1;
+                  m.edit_revision = 1;
+              })}},
         {&OutputHashes::work,
          {work(&WorkCounters::splits),
           work(&WorkCounters::merges),
@@ -112,6 +123,8 @@ std::vector<Part> parts()
           [](O& o) { o.scene.walks = 1; },
           [](O& o) { o.scene.refused[0] = 1; },
           [](O& o) { o.scene.refused[7] = 1; },
+          [](O& o) { o.scene.edits_refused[0] = 1; },
+          [](O& o) { o.scene.edits_refused[kEditRefusals - 1] = 1; },
           [](O& o) { o.work.skipped.add(Skip::models); },
           [](O& o) { o.work.skipped.add(Skip::boxes); },
           [](O& o) { o.faults = FrameFault::cache_full; }}}};
@@ -139,8 +152,9 @@ TEST(OutputHash, sees_every_field_in_its_part_and_tells_them_apart)
 TEST(OutputHash, is_what_the_format_page_says)
 {
     std::uint64_t state = 0;
-    // 15 counters, five of the scene, refusals, those of shortcuts and the faults, all zero.
-    for (std::size_t value = 0; value < 21 + kChangeRefusals + kSkips; ++value)
+    // 15 counters, five of the scene, refusals of changes and edits, those of shortcuts and the
+    // faults, all zero.
+    for (std::size_t value = 0; value < 21 + kChangeRefusals + kEditRefusals + kSkips; ++value)
     {
         state += 0x9E3779B97F4A7C15U;
         state = (state ^ (state >> 30)) * 0xBF58476D1CE4E5B9U;

@@ -367,8 +367,19 @@ TEST(RecordingFile, is_refused_when_a_value_is_out_of_its_range)
     expect_refusal(with_bytes(kModel, 8, {0, 0, 0, 0x01}),
                    "room for 16777216 faces; at most 16777215 are allowed");
     expect_refusal(with_bytes(kModel, 8, {1, 0}), "room for 1 faces; the base mesh alone has 8");
-    expect_refusal(with_bytes(kModel, 20, {2}),
-                   "the switch of the cache is 2; 0 and 1 are allowed");
+    expect_refusal(with_bytes(kModel, 20, {4}), "the flags of the model are 4; 0 to 3 are allowed");
+    for (const std::uint32_t room : {0U, kMaxAddedFaces + 1})
+    {
+        expect_refusal(with_section(kModel,
+                                    [&](auto& payload)
+                                    {
+                                        payload[20] = std::byte{2};
+                                        const auto* bytes =
+                                            reinterpret_cast<const std::byte*>(&room);
+                                        payload.insert(payload.begin() + 21, bytes, bytes + 4);
+                                    }),
+                       "added faces; 1 to 262144 are allowed");
+    }
     expect_refusal(with_bytes(kModel, 21, {0xFF, 0xFF, 0xFF}), "the model section has a size");
     expect_refusal(with_bytes(kModel, 25, {0}), "the model's header is damaged");
     expect_refusal(with_bytes(kPiece, 0, {1}), "a piece is neither a chunk or index page");

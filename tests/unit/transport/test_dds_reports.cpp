@@ -131,6 +131,23 @@ Telemetry telemetry_of(const Size& size)
     return telemetry;
 }
 
+ObjectsTelemetry objects_of(const Size& size)
+{
+    ObjectsTelemetry shown{40, 56, {}};
+    Distinct distinct;
+    for (std::uint32_t i = 0; i < size.objects; ++i)
+    {
+        auto& [server_epoch, object, number, name, model, pose] = shown.objects.emplace_back();
+        distinct.fill(server_epoch, object, model, pose.translation_m);
+        server_epoch <<= 40U;
+        number = 4'095 - i;
+        name.assign(i % (kMaxNameBytes + 1), 'n');
+        pose.rotation = {0.0, 0.6, 0.0, 0.8};
+        pose.scale = 1.0 + i;
+    }
+    return shown;
+}
+
 std::vector<ModelIdentity> identities(std::uint32_t count)
 {
     std::vector<ModelIdentity> models;
@@ -202,6 +219,7 @@ struct TelemetrySample
     tactus_v5_ToolTelemetry tool = {};
     tactus_v5_PairTelemetry pair = {};
     tactus_v5_ModelTelemetry model = {};
+    tactus_v5_ObjectTelemetry object = {};
     tactus_v5_Telemetry sample = {};
 
     TelemetrySample()
@@ -209,7 +227,10 @@ struct TelemetrySample
         std::strcpy(static_cast<char*>(model.name), "tiny");
         sample.tools = {1, 1, &tool, false};
         sample.pairs = {1, 1, &pair, false};
+        object.pose.rotation[3] = 1.0;
+        object.pose.scale = 1.0;
         sample.models = {1, 1, &model, false};
+        sample.objects = {1, 1, &object, false};
     }
 };
 
@@ -246,19 +267,24 @@ struct TelemetryReport
     using Reader = TelemetryReader;
     using Sample = TelemetrySample;
     static constexpr Topic kTopic = Topic::telemetry;
-    static constexpr Size kLargest{kMaxTools, kMaxShownModels, kMaxPairs, 0, 0};
+    static constexpr Size kLargest{kMaxTools, kMaxShownModels, kMaxPairs, 0, kMaxShownObjects};
 
     static auto writer(const Domain& domain, const std::string& name, const Size& size)
     {
         return std::move(TelemetryWriter::create(domain, name, identities(size.models))).value();
     }
-    static Telemetry made(const Size& size) { return telemetry_of(size); }
+    static auto made(const Size& size) { return std::pair(telemetry_of(size), objects_of(size)); }
+    static void write(TelemetryWriter& writer, const std::pair<Telemetry, ObjectsTelemetry>& report)
+    {
+        writer.write(report.first, report.second);
+    }
     static const auto& seen(const Reader& reader) { return reader.controllers(); }
     static void expect_same(const WatchedController& got, const Size& size)
     {
         EXPECT_EQ(got.name, "one");
         EXPECT_EQ(got.models, identities(size.models));
-        EXPECT_TRUE(got.telemetry == made(size));
+        EXPECT_TRUE(got.telemetry == telemetry_of(size));
+        EXPECT_TRUE(got.objects == objects_of(size));
     }
 
     using S = Sample;
@@ -275,6 +301,12 @@ struct TelemetryReport
         [](S& s) { s.pair.upper_m = kNan; },
         [](S& s) { s.pair.upper_m = -1.0; },
         [](S& s) { s.pair.force_n[2] = kInfinity; },
+        [](S& s) { s.sample.sweep_begin = 5; },
+        [](S& s) { s.sample.sweep_end = kMaxObjects + 1; },
+        [](S& s) { s.object.number = kMaxObjects; },
+        [](S& s) { s.object.pose.rotation[0] = 1.0; },
+        [](S& s) { s.object.pose.translation_m[2] = kNan; },
+        [](S& s) { std::strcpy(static_cast<char*>(s.object.name), "\x1b[31m"); },
     };
 };
 
@@ -290,6 +322,10 @@ struct RefinementStateReport
         return std::move(RefinementStateWriter::create(domain, name)).value();
     }
     static RefinementState made(const Size& size) { return refinement_state_of(size); }
+    static void write(RefinementStateWriter& writer, const RefinementState& report)
+    {
+        writer.write(report);
+    }
     static const auto& seen(const Reader& reader) { return reader.fronts(); }
     static void expect_same(const SeenFront& got, const Size& size)
     {
@@ -343,7 +379,7 @@ protected:
             : writer(Report::writer(domain, name, size)), report(Report::made(size))
         {
         }
-        void write() { writer->write(report); }
+        void write() { Report::write(*writer, report); }
 
         Domain domain{Domain::join(1).value()};
         decltype(Report::writer(domain, {}, {})) writer;

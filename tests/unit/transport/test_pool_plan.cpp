@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -83,6 +84,26 @@ TEST(PoolPlan, leaves_room_for_frame_and_chunk_loader_in_what_it_plans_for)
                 << models << " models, " << bytes << " bytes, the least " << least;
             expect_room_for_all(scene, bytes);
         }
+    }
+}
+
+TEST(PoolPlan, keeps_the_rooms_for_added_faces_in_the_least_and_in_more)
+{
+    PlannedScene scene(2);
+    constexpr std::array<std::uint32_t, 2> kRooms{0, 20'000};
+    const std::size_t without = least_pool_bytes(scene.setup, scene.headers, 0);
+    const std::size_t least = least_pool_bytes(scene.setup, scene.headers, 0, kRooms);
+    EXPECT_GT(least, without);
+    for (const std::size_t bytes : {least, 2 * least})
+    {
+        for (std::size_t i = 0; i < kRooms.size(); ++i)
+        {
+            scene.capacities[i].edit_faces = kRooms[i];
+        }
+        ASSERT_TRUE(try_plan_pools(scene.setup, scene.headers, bytes, 0, scene.capacities));
+        EXPECT_EQ(scene.capacities[0].edit_faces, kRooms[0]);
+        EXPECT_EQ(scene.capacities[1].edit_faces, kRooms[1]);
+        expect_room_for_all(scene, bytes);
     }
 }
 

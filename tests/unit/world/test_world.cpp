@@ -6,6 +6,8 @@
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
 #include "tests/unit/world/world_rig.hpp"
+#include "transport/dds/domain.hpp"
+#include "transport/dds/telemetry.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -27,6 +29,8 @@ namespace
 {
 
 constexpr double kRounding_n = 1e-9;
+/// Domain of no other test.
+constexpr std::uint32_t kViewedDomain = 207;
 /// Rounding of the cube to the grid of its model.
 constexpr double kGrid_m = 2e-6;
 
@@ -366,6 +370,42 @@ TEST(World, each_reason_for_a_withheld_force_has_its_text)
         EXPECT_NE(one, Withheld::nothing);
     }
     EXPECT_EQ(withheld_by(ForceOff::stall | ForceOff::disconnect), Withheld::disconnect);
+}
+
+/// The telemetry has the named objects, also those that are added later, where the hand's frames
+/// have them.
+TEST(World, shows_viewers_its_hands_and_objects_with_their_names)
+{
+    const auto viewer = std::move(dds::Domain::join({kViewedDomain, {}}, dds::Party::both)).value();
+    const auto reader = std::move(dds::TelemetryReader::create(viewer)).value();
+    World world({.objects_max = 2, .domain = kViewedDomain, .is_watched = true, .name = "seen"});
+    const WorldObject first = world.add(cube(), {.name = "table"});
+    const Hand hand = world.add(sphere(kRadius_m));
+    ASSERT_TRUE(hand.step(above(0.1)));
+    const WorldObject second =
+        world.add(first, {.pose = {.translation_m = {0.5, 0.0, 0.0}}, .name = "cup"});
+    ASSERT_TRUE(second) << second.error();
+    const auto are_seen = [&]
+    {
+        reader->poll();
+        return reader->controllers().size() == 1 &&
+               reader->controllers()[0].objects.objects.size() == 2;
+    };
+    for (int i = 0; i < 100'000 && !are_seen(); ++i)
+    {
+        ASSERT_TRUE(hand.step(above(0.1)));
+    }
+    ASSERT_TRUE(are_seen());
+    const dds::WatchedController& seen = reader->controllers()[0];
+    EXPECT_EQ(seen.name, "seen");
+    EXPECT_EQ(seen.telemetry.tools[0].position_m, above(0.1).position_m);
+    EXPECT_EQ(seen.objects.objects[0].name, "table");
+    EXPECT_EQ(seen.objects.objects[1].name, "cup");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        EXPECT_NEAR(seen.objects.objects[0].pose.translation_m[axis], 0.0, 1e-12);
+        EXPECT_NEAR(seen.objects.objects[1].pose.translation_m[axis], axis == 0 ? 0.5 : 0.0, 1e-12);
+    }
 }
 
 } // namespace

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+
+/// Vertex removal by half-edge collapse. A removal's move is the smaller of two bounds. The first
+/// is the length of the edge, since moving the vertex along it moves each point by no more. The
+/// second holds if the star before and after is a graph over one plane: both are piecewise linear
+/// with the same border, so their largest vertical gap is at the removed vertex or where an edge
+/// before crosses one after.
+
+#include "host_tools/edit/merge_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Rounds over all vertices; a later round finds what earlier removals made possible.
+constexpr int kMergeRounds = 6;
+/// Height below which a triangle's normal is rounding alone, and share of the slack below which it
+/// is of no use.
+constexpr double kSliverHeight_quanta = 2.0;
+constexpr double kSliverShare = 0.5;
+/// Largest number of faces round a vertex that is examined.
+constexpr std::size_t kMaxMergedFan = 24;
+/// Least cosine between the normals of a face before and after.
+constexpr double kLeastNormalCosine = 0.5;
+
+struct MergePointHash
+{
+    std::size_t operator()(const GridPoint& point) const noexcept
+    {
+        std::uint64_t hash = 0;
+        for (const std::int32_t value : point)
+        {
+            hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x9E37'79B9'7F4A'7C15ULL;
+            hash ^= hash >> 32U;
+        }
+        return static_cast<std::size_t>(hash);
+    }
+};
+
+class PieceMerger
+{
+public:
+    PieceMerger(std::vector<SurfaceFace>& faces, std::span<const GridPoint> fixed, double slack)
+        : faces_(faces), slack_(slack), sliver_(std::max(kSliverHeight_quanta, kSliverShare * slack)), is_alive_(faces.size(), true)
+    {
+        std::unordered_map<GridPoint, std::uint32_t, MergePointHash> found;
+        for (std::uint32_t face = 0; face < faces.size(); ++face)
+        {
+            std::array<std::uint32_t, 3> corners{};
+            for (std::size_t i = 0; i < 3; ++i)
+            {
+                const GridPoint& at = faces[face].corners[i];
+                const auto [place, is_new] =
+                    found.try_emplace(at, static_cast<std::uint32_t>(points_.size()));
+                if (is_new)
+                {
+                    points_.push_back(to_vec3(at));
+                    stars_.emplace_back();
+                }
+                corners[i] = place->second;
+                stars_[place->second].push_back(face);
+            }
+            corners_.push_back(corners);
+        }
+        is_fixed_.assign(points_.size(), false);
+        for (const GridPoint& point : fixed)
+        {
+            const auto place = found.find(point);
+            if (place != found.end())
+            {
+                is_fixed_[place->second] = true;
+            }
+        }
+    }
+
+    void run()
+    {
+        std::vector<bool> is_open(points_.size(), true);
+        for (int round = 0; round < kMergeRounds; ++round)
+        {
+            std::size_t removed = 0;
+            for (std::uint32_t vertex = 0; vertex < points_.size(); ++vertex)
+            {
+                if (is_open[vertex] && !is_fixed_[vertex])
+                {
+                    is_open[vertex] = false;
+                    if (remove(vertex))
+                    {
+                        ++removed;
+                        for (const std::uint32_t neighbour : ring_)
+                        {
+                            is_open[neighbour] = true;
+                        }
+                    }
+                }
+            }
+            if (removed == 0)
+            {
+                break;
+            }
+        }
+        std::size_t face = 0;
+        std::erase_if(faces_, [&](const SurfaceFace&) { return !is_alive_[face++]; });
+    }
+
+private:
+    struct Removal
+    {
+        std::uint32_t target{0};
+        double move{0.0};
+        double shape{0.0}; ///< Least height of a face that remains.
+    };
+
+    /// Removes the vertex to the neighbour that costs least; false if none is allowed. Fills ring_.
+    bool remove(std::uint32_t vertex)
+    {
+        if (!find_ring(vertex))
+        {
+            return false;
+        }
+        double spent = 0.0;
+        for (const std::uint32_t face : stars_[vertex])
+        {
+            spent = std::max(spent, static_cast<double>(faces_[face].moved_quanta));
+        }
+        std::optional<Removal> best;
+        for (std::size_t i = 0; i < ring_.size(); ++i)
+        {
+            const auto removal = removal_to(vertex, i, slack_ - spent);
+            if (removal && (!best || removal->move < best->move - 0.25 ||
+                            (removal->move < best->move + 0.25 && removal->shape > best->shape)))
+            {
+                best = removal;
+            }
+        }
+        if (!best)
+        {
+            return false;
+        }
+        apply(vertex, *best, spent);
+        return true;
+    }
+
+    /// The neighbours round a vertex, counter-clockwise; false unless its faces form one closed
+    /// fan.
+    bool find_ring(std::uint32_t vertex)
+    {
+        ring_.clear();
+        const std::vector<std::uint32_t>& star = stars_[vertex];
+        if (star.size() < 3 || star.size() > kMaxMergedFan)
+        {
+            return false;
+        }
+        pairs_.clear();
+        for (const std::uint32_t face : star)
+        {
+            const auto& corners = corners_[face];
+            const std::size_t at = corners[0] == vertex ? 0 : (corners[1] == vertex ? 1 : 2);
+            pairs_.push_back({corners[(at + 1) % 3], corners[(at + 2) % 3]});
+        }
+        std::uint32_t next = pairs_[0][0];
+        for (std::size_t i = 0; i < pairs_.size(); ++i)
+        {
+            const auto pair = std::find_if(pairs_.begin(), pairs_.end(),
+                                           [&](const auto& p) { return p[0] == next; });
+            if (pair == pairs_.end() || std::find(ring_.begin(), ring_.end(), next) != ring_.end())
+            {
+                return false;
+            }
+            ring_.push_back(next);
+            next = (*pair)[1];
+        }
+        return next == ring_[0];
+    }
+
+    /// True if the only common neighbours of the vertex and its neighbour are those of their two
+    /// faces, so that no two faces become one.
+    [[nodiscard]] bool is_linked_once(std::uint32_t neighbour) const
+    {
+        std::size_t common = 0;
+        scratch_.clear();
+        for (const std::uint32_t face : stars_[neighbour])
+        {
+            for (const std::uint32_t corner : corners_[face])
+            {
+                if (std::find(scratch_.begin(), scratch_.end(), corner) == scratch_.end())
+                {
+                    scratch_.push_back(corner);
+                    common += corner != neighbour &&
+                              std::find(ring_.begin(), ring_.end(), corner) != ring_.end();
+                }
+            }
+        }
+        return common == 2;
+    }
+
+    [[nodiscard]] static double height_of(const Vec3& a, const Vec3& b, const Vec3& c)
+    {
+        const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+        return longest == 0.0 ? 0.0 : (b - a).cross(c - a).norm() / longest;
+    }
+
+    [[nodiscard]] std::optional<Removal> removal_to(std::uint32_t vertex, std::size_t target,
+                                                    double allowed)
+    {
+        const std::size_t size = ring_.size();
+        const Vec3& apex = points_[vertex];
+        const Vec3& to = points_[ring_[target]];
+        Removal removal{ring_[target], (to - apex).norm(), std::numeric_limits<double>::max()};
+        Vec3 up(0.0, 0.0, 0.0);
+        double old_height = std::numeric_limits<double>::max();
+        for (std::size_t i = 0; i < size; ++i)
+        {
+            const Vec3& a = points_[ring_[i]];
+            const Vec3& b = points_[ring_[(i + 1) % size]];
+            up += (a - apex).cross(b - apex);
+            old_height = std::min(old_height, height_of(apex, a, b));
+        }
+        if (up.norm() == 0.0)
+        {
+            return std::nullopt;
+        }
+        up.normalize();
+        bool is_graph = true;
+        for (std::size_t i = 0; i < size; ++i)
+        {
+            const Vec3& a = points_[ring_[i]];
+            const Vec3& b = points_[ring_[(i + 1) % size]];
+            const Vec3 before = (a - apex).cross(b - apex);
+            const bool was_sliver = height_of(apex, a, b) < sliver_;
+            is_graph &= was_sliver || before.dot(up) > 0.0;
+            if (i == target || (i + 1) % size == target)
+            {
+                continue;
+            }
+            const Vec3 after = (a - to).cross(b - to);
+            const double height = height_of(to, a, b);
+            removal.shape = std::min(removal.shape, height);
+            is_graph &= after.dot(up) > 0.0;
+            if (!was_sliver &&
+                !(after.dot(before) > kLeastNormalCosine * after.norm() * before.norm()))
+            {
+                return std::nullopt;
+            }
+        }
+        if (removal.shape < std::min(sliver_, old_height))
+        {
+            return std::nullopt;
+        }
+        if (is_graph)
+        {
+            removal.move = std::min(removal.move, gap_to(apex, target, up));
+        }
+        if (removal.move > allowed || !is_linked_once(removal.target))
+        {
+            return std::nullopt;
+        }
+        return removal;
+    }
+
+    /// Largest gap along `up` between the star of the apex and the fan from ring_[target].
+    [[nodiscard]] double gap_to(const Vec3& apex, std::size_t target, const Vec3& up)
+    {
+        const std::size_t size = ring_.size();
+        const Vec3 x = up.unitOrthogonal();
+        const Vec3 y = up.cross(x);
+        flat_.clear();
+        for (const std::uint32_t vertex : ring_)
+        {
+            const Vec3 from_apex = points_[vertex] - apex;
+            flat_.push_back({from_apex.dot(x), from_apex.dot(y), from_apex.dot(up)});
+        }
+        const std::array<double, 3>& t = flat_[target];
+        double gap = 0.0;
+        // Each edge of the new fan against each old spoke from the apex, which is the origin.
+        for (std::size_t i = 2; i + 1 < size; ++i)
+        {
+            const std::array<double, 3>& e = flat_[(target + i) % size];
+            for (const std::array<double, 3>& spoke : flat_)
+            {
+                const double dx = e[0] - t[0];
+                const double dy = e[1] - t[1];
+                const double turn = spoke[0] * dy - spoke[1] * dx;
+                if (turn == 0.0)
+                {
+                    continue;
+                }
+                const double along_spoke = (t[0] * dy - t[1] * dx) / turn;
+                const double along_edge = (t[0] * spoke[1] - t[1] * spoke[0]) / turn;
+                if (along_spoke >= 0.0 && along_spoke <= 1.0 && along_edge >= 0.0 &&
+                    along_edge <= 1.0)
+                {
+                    gap = std::max(
+                        gap, std::abs(t[2] + along_edge * (e[2] - t[2]) - along_spoke * spoke[2]));
+                }
+            }
+        }
+        // The apex against the new face below it.
+        for (std::size_t i = 1; i + 1 < size; ++i)
+        {
+            const std::array<double, 3>& a = flat_[(target + i) % size];
+            const std::array<double, 3>& b = flat_[(target + i + 1) % size];
+            const double at = a[0] * b[1] - a[1] * b[0];
+            const double aa = b[0] * t[1] - b[1] * t[0];
+            const double ab = t[0] * a[1] - t[1] * a[0];
+            const double sum = at + aa + ab;
+            if (sum > 0.0 && at >= 0.0 && aa >= 0.0 && ab >= 0.0)
+            {
+                gap = std::max(gap, std::abs(at * t[2] + aa * a[2] + ab * b[2]) / sum);
+            }
+        }
+        return gap;
+    }
+
+    void apply(std::uint32_t vertex, const Removal& removal, double spent)
+    {
+        const auto moved = static_cast<float>(spent + removal.move);
+        std::vector<std::uint32_t> star;
+        star.swap(stars_[vertex]);
+        for (const std::uint32_t face : star)
+        {
+            auto& corners = corners_[face];
+            if (std::find(corners.begin(), corners.end(), removal.target) != corners.end())
+            {
+                is_alive_[face] = false;
+                for (const std::uint32_t corner : corners)
+                {
+                    std::erase(stars_[corner], face);
+                }
+                continue;
+            }
+            const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
+            const auto place = static_cast<std::size_t>(at);
+            corners[place] = removal.target;
+            stars_[removal.target].push_back(face);
+            faces_[face].moved_quanta = moved;
+            const Vec3& to = points_[removal.target];
+            faces_[face].corners[place] = {static_cast<std::int32_t>(to.x()),
+                                           static_cast<std::int32_t>(to.y()),
+                                           static_cast<std::int32_t>(to.z())};
+        }
+    }
+
+    std::vector<SurfaceFace>& faces_;
+    double slack_;
+    double sliver_; ///< Height of a triangle whose normal does not count.
+    std::vector<Vec3> points_;
+    std::vector<std::array<std::uint32_t, 3>> corners_; ///< By face, as indices of points_.
+    std::vector<std::vector<std::uint32_t>> stars_;     ///< Faces by point.
+    std::vector<bool> is_alive_;                        ///< By face.
+    std::vector<bool> is_fixed_;                        ///< By point.
+
+    // Scratch.
+    std::vector<std::uint32_t> ring_;
+    std::vector<std::array<std::uint32_t, 2>> pairs_;
+    std::vector<std::array<double, 3>> flat_;
+    mutable std::vector<std::uint32_t> scratch_;
+};
+
+} // namespace
+
+void merge_pieces(std::vector<SurfaceFace>& faces, std::span<const GridPoint> fixed,
+                  double slack_quanta)
+{
+    PieceMerger(faces, fixed, slack_quanta).run();
+}
+
+} // namespace tactus

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/math/vec3.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+// One thread at a time.
+namespace tactus
+{
+
+/// A point of a model's grid, in quanta.
+using GridPoint = std::array<std::int32_t, 3>;
+using GridTriangle = std::array<GridPoint, 3>;
+
+[[nodiscard]] inline Vec3 to_vec3(const GridPoint& point) noexcept
+{
+    return {static_cast<double>(point[0]), static_cast<double>(point[1]),
+            static_cast<double>(point[2])};
+}
+
+/// A box of grid points, with its borders.
+struct GridBox
+{
+    GridPoint low{INT32_MAX, INT32_MAX, INT32_MAX};
+    GridPoint high{INT32_MIN, INT32_MIN, INT32_MIN};
+
+    void add(const GridPoint& point) noexcept
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            low[axis] = std::min(low[axis], point[axis]);
+            high[axis] = std::max(high[axis], point[axis]);
+        }
+    }
+    [[nodiscard]] bool meets(const GridBox& other) const noexcept
+    {
+        return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] &&
+               other.low[1] <= high[1] && low[2] <= other.high[2] && other.low[2] <= high[2];
+    }
+};
+
+[[nodiscard]] inline GridBox box_of(const GridTriangle& face) noexcept
+{
+    GridBox box;
+    for (const GridPoint& corner : face)
+    {
+        box.add(corner);
+    }
+    return box;
+}
+
+/// A face of the present surface.
+struct SurfaceFace
+{
+    GridTriangle corners{};
+    std::uint32_t bucket{0}; ///< As AddedFace::bucket.
+    /// Distance by which merging has moved this part of the surface at most; 0 for a source face.
+    float moved_quanta{0.0F};
+};
+
+/// The faces of a surface by id, found by region in a hierarchical grid: each face is listed in
+/// one cell, that of its box's least corner, on the level whose cells are as large as the box.
+/// 48 B an id and 4 to 8 B a face that was there at the start.
+class SurfaceFaces
+{
+public:
+    /// Room for ids below `ids`, none of them present. `typical_size` is the usual size of a face's
+    /// box in quanta, `typical_count` the usual number of faces; both affect speed only.
+    SurfaceFaces(std::uint32_t ids, std::uint32_t typical_size, std::uint32_t typical_count);
+
+    [[nodiscard]] std::uint32_t ids() const noexcept
+    {
+        return static_cast<std::uint32_t>(faces_.size());
+    }
+    /// Number of faces that are present.
+    [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+    [[nodiscard]] bool has(std::uint32_t id) const noexcept { return next_[id] != kAbsent; }
+    /// A face that is present.
+    [[nodiscard]] const SurfaceFace& operator[](std::uint32_t id) const noexcept
+    {
+        return faces_[id];
+    }
+    /// Adds a face that is absent.
+    void add(std::uint32_t id, const SurfaceFace& face);
+    /// Removes a face that is present.
+    void remove(std::uint32_t id);
+
+    /// Ids of the faces whose boxes meet the box, ascending.
+    [[nodiscard]] std::vector<std::uint32_t> in_box(const GridBox& box) const;
+
+private:
+    static constexpr std::uint32_t kAbsent = 0xFFFF'FFFFU;
+    static constexpr std::uint32_t kEnd = 0xFFFF'FFFEU; ///< End of a list.
+
+    struct Cell
+    {
+        std::uint32_t level{0};
+        GridPoint at{};
+        bool operator==(const Cell&) const noexcept = default;
+    };
+
+    [[nodiscard]] Cell cell_of(const SurfaceFace& face) const noexcept;
+    [[nodiscard]] std::size_t list_of(const Cell& cell) const noexcept;
+
+    std::vector<SurfaceFace> faces_;
+    std::vector<std::uint32_t> next_; ///< Next face of the same list; kEnd, or kAbsent.
+    std::vector<std::uint32_t> lists_;
+    std::array<std::uint32_t, 32> level_counts_{};
+    std::uint32_t least_level_;
+    std::uint32_t count_{0};
+};
+
+} // namespace tactus

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/loop/burr.hpp"
+#include "platform/loop/cut_tap.hpp"
+#include "transport/base/refusal.hpp"
+#include "transport/dds/domain.hpp"
+#include "transport/dds/edit_reader.hpp"
+#include "transport/edit_request.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace tactus::hrtc
+{
+
+/// Request of a cut to the server of its model. `origin_m` is that of the model's header.
+[[nodiscard]] EditRequest request_of(const BurrCut& cut, const BurrShape& shape,
+                                     const Vec3& origin_m);
+
+/// Counts of the edits that this controller's tools asked for.
+struct CutCounts
+{
+    std::uint64_t sent{0};
+    std::uint64_t unsent{0};       ///< Cuts of models without edits, or that DDS did not take.
+    std::uint64_t samples_lost{0}; ///< CutTap::lost().
+    double volume_m3{0.0};         ///< Greatest volume that the sent ones remove.
+};
+
+/// Sends edit requests where tools press on models. Transport thread.
+class CutSender
+{
+public:
+    /// Refused if a tool that is to carve has no volume. Null if no tool is to carve. `domain` and
+    /// `controller` must outlive the sender.
+    [[nodiscard]] static Result<std::unique_ptr<CutSender>, Refusal>
+    create(const dds::Domain& domain, const Controller& controller, const Options& options);
+
+    /// Tap for the haptic thread, which must not outlive the sender.
+    [[nodiscard]] CutTap& tap() noexcept { return tap_; }
+
+    /// Takes the samples, and sends the cuts that are due. `server_of` gives the epoch of a model's
+    /// server, 0 if there is none.
+    void step(const dds::EditReader& reader,
+              const std::function<std::uint64_t(std::size_t model)>& server_of);
+
+    [[nodiscard]] CutCounts counts() const
+    {
+        CutCounts counts = counts_;
+        counts.samples_lost = tap_.lost();
+        return counts;
+    }
+
+private:
+    struct Burr
+    {
+        BurrLaw law;
+        std::uint64_t edits{0}; ///< Edits of the model before the last cut.
+    };
+
+    CutSender(const dds::Domain& domain, const Controller& controller,
+              std::map<std::uint32_t, Burr> burrs, std::uint32_t cutting);
+
+    [[nodiscard]] bool try_send(const BurrCut& cut, const BurrShape& shape,
+                                const dds::EditReader& reader, std::uint64_t server_epoch);
+
+    std::vector<Vec3> origins_m_;         ///< ModelHeader::origin_m() of each model.
+    std::map<std::uint32_t, Burr> burrs_; ///< Burrs by the numbers of their tools.
+    CutTap tap_;
+    dds::EditWriter writer_;
+    CutCounts counts_;
+};
+
+} // namespace tactus::hrtc

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/base/model_id.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/records/surface_edit.hpp"
+#include "transport/edit_content.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus
+{
+
+/// Passes edits from the transport thread to the haptic thread, in order. It holds a few edits in
+/// fixed memory, 200 KiB. Neither thread waits for the other: the transport thread offers an edit
+/// again if the mailbox is full.
+///
+/// Each side writes only its own count, as in SpscQueue. The edits stay in place while a frame
+/// reads them.
+class EditMailbox
+{
+public:
+    /// Number of edits in the mailbox at most: those of two frames.
+    static constexpr std::size_t kEdits = 2 * std::size_t{kMaxEditsPerFrame};
+
+    EditMailbox() : cells_(kEdits) {}
+
+    /// Transport thread: adds an edit. False, with nothing changed, if the mailbox is full. The
+    /// edit has at most kMaxEditFaces faces of each kind (asserted).
+    [[nodiscard]] bool try_put(ModelId model, const EditContent& edit) noexcept;
+
+    /// Haptic thread: edits for this frame, at most kMaxEditsPerFrame, valid until done().
+    /// Allocates nothing.
+    [[nodiscard]] std::span<const SurfaceEdit> edits() noexcept;
+    /// Haptic thread: returns the cells of the edits from the last edits(). Nothing happens if
+    /// there were none.
+    void done() noexcept;
+
+    /// Any thread: number of edits that frames have taken.
+    [[nodiscard]] std::uint64_t taken() const noexcept
+    {
+        return head_.load(std::memory_order_relaxed); // A number for display; orders nothing.
+    }
+
+private:
+    struct Cell
+    {
+        ModelId model;
+        std::uint32_t revision{0};
+        std::uint32_t removed_count{0};
+        std::uint32_t added_count{0};
+        Aabb removed_m;
+        std::array<FaceId, kMaxEditFaces> removed{};
+        std::array<AddedFace, kMaxEditFaces> added{};
+    };
+
+    std::vector<Cell> cells_;
+    std::array<SurfaceEdit, kMaxEditsPerFrame> views_{};
+    std::size_t shown_{0}; ///< Number of edits from the last edits().
+    alignas(64) std::atomic<std::uint64_t> head_{0};
+    alignas(64) std::atomic<std::uint64_t> tail_{0};
+};
+
+} // namespace tactus

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "platform/world/world_parts.hpp"
+#include "rt_core/math/similarity.hpp"
+#include "rt_core/records/material.hpp"
+#include "transport/base/refusal.hpp"
+
+#include <optional>
+#include <string>
+
+// Values that a program gives to a World: in range, or refused in one line. Any thread except the
+// haptic one.
+namespace tactus
+{
+
+/// Refusal of an argument or option out of its range.
+[[nodiscard]] Refusal wrong_value(std::string text);
+
+[[nodiscard]] Result<Material, Refusal> checked_material(const MaterialOptions& options);
+[[nodiscard]] Result<Similarity, Refusal> checked_place(const Pose& pose);
+/// Fault of a pose of a hand; empty if it is in range.
+[[nodiscard]] std::optional<Refusal> fault_of(const HandPose& pose);
+
+} // namespace tactus

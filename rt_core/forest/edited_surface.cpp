@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/forest/edited_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus
+{
+
+namespace
+{
+
+/// Buckets are ranks of faces, in eighths; AB-Tree paths have room for no more.
+constexpr std::uint32_t kBucketEnd = 1U << 31U;
+
+Aabb union_of(Aabb a, const Aabb& b) noexcept
+{
+    a.add(b);
+    return a;
+}
+
+/// Sum of the sides of a box: unlike the volume it also grows for flat boxes.
+double size_of(const Aabb& box) noexcept
+{
+    double sum = 0.0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        sum += static_cast<double>(box.high[axis]) - static_cast<double>(box.low[axis]);
+    }
+    return sum;
+}
+
+} // namespace
+
+EditedSurface::EditedSurface(Arena& arena, const ModelHeader& header, std::uint32_t room) noexcept
+    : face_ids_(header.counts().face_ids())
+    , quantum_m_(header.quantum_m())
+    , extent_quanta_(header.fields().extent_quanta)
+    , removed_(arena.take<std::uint64_t>(room > 0 ? (face_ids_ + room + kBits - 1) / kBits : 0))
+    , added_(arena.take<AddedFace>(room))
+{
+    if (arena.is_measuring())
+    {
+        added_ = {};
+        return;
+    }
+    for (std::uint32_t slot = 0; slot < room; ++slot)
+    {
+        flip({face_ids_ + slot});
+    }
+}
+
+bool EditedSurface::may_be_removed_near(const Aabb& box, float margin_m) const noexcept
+{
+    const Aabb wide = box.inflated(margin_m);
+    return std::ranges::any_of(boxes_, [&](const Aabb& removed) { return do_meet(wide, removed); });
+}
+
+std::optional<EditRefusal> EditedSurface::take(const SurfaceEdit& edit) noexcept
+{
+    if (!can_be_edited())
+    {
+        return EditRefusal::unknown_model;
+    }
+    if (edit.revision != revision_ + 1)
+    {
+        return EditRefusal::wrong_revision;
+    }
+    if (edit.removed.size() > kMaxEditFaces || edit.added.size() > kMaxEditFaces)
+    {
+        return EditRefusal::too_large;
+    }
+    if (!try_remove(edit.removed))
+    {
+        return EditRefusal::unknown_face;
+    }
+    const bool has_source =
+        std::ranges::any_of(edit.removed, [&](FaceId face) { return !is_added(face); });
+    const Aabb& box = edit.removed_m;
+    bool is_good = !has_source;
+    if (has_source)
+    {
+        is_good = true;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            is_good = is_good && box.low[axis] <= box.high[axis] && std::isfinite(box.low[axis]) &&
+                      std::isfinite(box.high[axis]);
+        }
+    }
+    std::size_t come = 0;
+    for (; is_good && come < edit.added.size(); ++come)
+    {
+        const AddedFace& face = edit.added[come];
+        is_good = is_sound(face) && is_removed(id_of(face));
+        if (!is_good)
+        {
+            break;
+        }
+        flip(id_of(face));
+    }
+    if (!is_good)
+    {
+        for (const AddedFace& face : edit.added.first(come))
+        {
+            flip(id_of(face));
+        }
+        restore(edit.removed);
+        return EditRefusal::bad_face;
+    }
+    for (const AddedFace& face : edit.added)
+    {
+        added_[face.slot] = face;
+    }
+    const auto gone = static_cast<std::uint32_t>(
+        std::ranges::count_if(edit.removed, [&](FaceId face) { return is_added(face); }));
+    added_count_ = added_count_ - gone + static_cast<std::uint32_t>(edit.added.size());
+    added_max_ = std::max(added_max_, added_count_);
+    if (has_source)
+    {
+        add_box(box);
+    }
+    revision_ = edit.revision;
+    return std::nullopt;
+}
+
+bool EditedSurface::is_present(FaceId face) const noexcept
+{
+    return face.value < face_ids_ + added_.size() && !is_removed(face);
+}
+
+bool EditedSurface::is_sound(const AddedFace& face) const noexcept
+{
+    if (face.slot >= added_.size() || face.bucket >= kBucketEnd)
+    {
+        return false;
+    }
+    for (const Vec3f& corner : face.corners_m)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            const float quanta = corner[axis] / quantum_m_; // Exact: a power of two.
+            if (!(quanta >= 0.0F && quanta <= static_cast<float>(extent_quanta_[axis])) ||
+                quanta != static_cast<float>(static_cast<std::int32_t>(quanta)))
+            {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// Marks all these faces as removed. False, with nothing changed, if one is not part of the surface
+/// or occurs twice.
+bool EditedSurface::try_remove(std::span<const FaceId> faces) noexcept
+{
+    for (std::size_t i = 0; i < faces.size(); ++i)
+    {
+        if (faces[i].is_none() || !is_present(faces[i]))
+        {
+            restore(faces.first(i));
+            return false;
+        }
+        flip(faces[i]);
+    }
+    return true;
+}
+
+void EditedSurface::restore(std::span<const FaceId> faces) noexcept
+{
+    for (const FaceId face : faces)
+    {
+        flip(face);
+    }
+}
+
+/// Adds a box; if there are too many, the two whose union is smallest become one.
+void EditedSurface::add_box(const Aabb& box) noexcept
+{
+    for (Aabb& known : boxes_)
+    {
+        if (union_of(known, box) == known)
+        {
+            return;
+        }
+    }
+    if (boxes_.try_push_back(box))
+    {
+        return;
+    }
+    // The new box is one of the two, or takes the place of one of them.
+    Aabb* first = nullptr;
+    Aabb* second = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (Aabb& a : boxes_)
+    {
+        if (const double size = size_of(union_of(a, box)); size < least)
+        {
+            least = size;
+            first = &a;
+            second = nullptr;
+        }
+        for (Aabb* b = &a + 1; b < boxes_.end(); ++b)
+        {
+            if (const double size = size_of(union_of(a, *b)); size < least)
+            {
+                least = size;
+                first = &a;
+                second = b;
+            }
+        }
+    }
+    if (second == nullptr)
+    {
+        first->add(box);
+        return;
+    }
+    first->add(*second);
+    *second = box;
+}
+
+void EditedSurface::flip(FaceId face) noexcept
+{
+    removed_[face.value / kBits] ^= std::uint64_t{1} << (face.value % kBits);
+}
+
+} // namespace tactus

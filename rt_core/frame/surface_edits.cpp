@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "rt_core/frame/surface_edits.hpp"
+
+#include <algorithm>
+
+namespace tactus
+{
+
+namespace
+{
+
+std::optional<EditRefusal> try_edit(const SurfaceEdit& edit, FrameParts& parts,
+                                    FrameAccount& account) noexcept
+{
+    if (edit.model.value >= parts.models.size())
+    {
+        return EditRefusal::unknown_model;
+    }
+    const auto refusal = parts.models[edit.model].edit(edit, account.work, account.faults);
+    if (!refusal)
+    {
+        parts.models.keep_busy(edit.model);
+    }
+    return refusal;
+}
+
+} // namespace
+
+void SurfaceEdits::make(std::span<const SurfaceEdit> edits, FrameParts& parts,
+                        FrameAccount& account) noexcept
+{
+    const std::size_t taken = std::min<std::size_t>(edits.size(), kMaxEditsPerFrame);
+    for (const SurfaceEdit& edit : edits.first(taken))
+    {
+        if (const auto refusal = try_edit(edit, parts, account))
+        {
+            ++account.scene.edits_refused[static_cast<std::size_t>(*refusal)];
+        }
+        else
+        {
+            made_.push_back(edit);
+        }
+    }
+    account.scene.edits_refused[static_cast<std::size_t>(EditRefusal::too_many)] +=
+        static_cast<std::uint32_t>(edits.size() - taken);
+}
+
+void SurfaceEdits::tell_pairs(FrameParts& parts) noexcept
+{
+    for (const SurfaceEdit& edit : made_)
+    {
+        for (Pair* pair : parts.pairs.all())
+        {
+            if (pair->model() == edit.model)
+            {
+                pair->follow(edit);
+            }
+        }
+    }
+    made_.clear();
+}
+
+} // namespace tactus

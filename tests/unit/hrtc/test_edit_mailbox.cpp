@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#include "platform/loop/edit_mailbox.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <thread>
+
+namespace tactus
+{
+namespace
+{
+
+/// Edit of as many faces as its number says, each with the number in it.
+EditContent edit_of(std::uint32_t number)
+{
+    EditContent edit;
+    edit.revision = number;
+    for (std::uint32_t i = 0; i < number % (kMaxEditFaces + 1); ++i)
+    {
+        edit.removed.push_back(FaceId{number + i});
+        edit.added.push_back({number, i, {}});
+    }
+    edit.removed_m.add(Vec3f{static_cast<float>(number), 0.0F, 0.0F});
+    return edit;
+}
+
+void expect_is(const SurfaceEdit& edit, std::uint32_t number)
+{
+    const EditContent expected = edit_of(number);
+    ASSERT_EQ(edit.model, ModelId{number % 7});
+    ASSERT_EQ(edit.revision, number);
+    ASSERT_EQ(edit.removed_m, expected.removed_m);
+    ASSERT_TRUE(std::ranges::equal(edit.removed, expected.removed));
+    ASSERT_TRUE(std::ranges::equal(edit.added, expected.added));
+}
+
+bool try_put(EditMailbox& sut, std::uint32_t number)
+{
+    return sut.try_put(ModelId{number % 7}, edit_of(number));
+}
+
+TEST(EditMailbox, is_empty_at_first)
+{
+    EditMailbox sut;
+    EXPECT_TRUE(sut.edits().empty());
+    sut.done();
+    EXPECT_TRUE(sut.edits().empty());
+}
+
+TEST(EditMailbox, refuses_an_edit_too_many_and_has_room_once_a_frame_is_done)
+{
+    EditMailbox sut;
+    std::uint32_t next = 1;
+    while (next <= EditMailbox::kEdits)
+    {
+        ASSERT_TRUE(try_put(sut, next++));
+    }
+    EXPECT_FALSE(try_put(sut, next));
+    const auto edits = sut.edits();
+    ASSERT_EQ(edits.size(), kMaxEditsPerFrame);
+    EXPECT_FALSE(try_put(sut, next)); // The frame still reads them.
+    expect_is(edits[0], 1);
+    expect_is(edits[1], 2);
+    sut.done();
+    EXPECT_EQ(sut.taken(), 2U);
+    for (std::uint32_t i = 0; i < kMaxEditsPerFrame; ++i)
+    {
+        EXPECT_TRUE(try_put(sut, next++));
+    }
+    EXPECT_FALSE(try_put(sut, next));
+    expect_is(sut.edits()[0], 3);
+}
+
+TEST(EditMailbox, edits_that_are_not_done_are_shown_again)
+{
+    EditMailbox sut;
+    ASSERT_TRUE(try_put(sut, 5));
+    expect_is(sut.edits()[0], 5);
+    ASSERT_TRUE(try_put(sut, 6));
+    ASSERT_EQ(sut.edits().size(), 2U);
+    expect_is(sut.edits()[0], 5);
+    sut.done();
+    EXPECT_TRUE(sut.edits().empty());
+}
+
+TEST(EditMailbox, holds_the_largest_edit)
+{
+    EditMailbox sut;
+    ASSERT_TRUE(try_put(sut, kMaxEditFaces));
+    expect_is(sut.edits()[0], kMaxEditFaces);
+}
+
+TEST(EditMailbox, passes_all_edits_in_order_between_two_threads)
+{
+    constexpr std::uint32_t kAll = 3'000;
+    EditMailbox sut;
+    std::thread transport(
+        [&]
+        {
+            for (std::uint32_t number = 1; number <= kAll;)
+            {
+                number += try_put(sut, number) ? 1U : 0U;
+            }
+        });
+    std::uint32_t taken = 0;
+    while (taken < kAll)
+    {
+        const auto edits = sut.edits();
+        ASSERT_LE(edits.size(), kMaxEditsPerFrame);
+        for (const SurfaceEdit& edit : edits)
+        {
+            expect_is(edit, ++taken);
+        }
+        sut.done();
+    }
+    transport.join();
+    EXPECT_EQ(sut.taken(), kAll);
+    EXPECT_TRUE(sut.edits().empty());
+}
+
+} // namespace
+} // namespace tactus

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Copyright the Tactus authors.
+#pragma once
+
+#include "rt_core/records/surface_edit.hpp"
+
+#include <cstdint>
+#include <vector>
+
+// Any thread except the haptic one: values that allocate.
+namespace tactus
+{
+
+/// A SurfaceEdit that owns its faces, for a model that its holder knows.
+struct EditContent
+{
+    std::uint32_t revision{0};
+    std::vector<FaceId> removed;
+    std::vector<AddedFace> added;
+    Aabb removed_m; ///< SurfaceEdit::removed_m.
+
+    bool operator==(const EditContent&) const = default;
+
+    /// View for a frame; valid as long as this object and unchanged.
+    [[nodiscard]] SurfaceEdit view(ModelId model) const noexcept
+    {
+        return {model, revision, removed, added, removed_m};
+    }
+};
+
+/// True if the box holds at least a point and its coordinates are finite.
+[[nodiscard]] inline bool is_sound(const Aabb& box) noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        // False for NaN, too.
+        if (!(box.low[axis] >= -Aabb::kHuge && box.low[axis] <= box.high[axis] &&
+              box.high[axis] <= Aabb::kHuge))
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
+} // namespace tactus
