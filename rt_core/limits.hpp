@@ -263,7 +263,7 @@ inline constexpr std::uint32_t kMaxShadedFaces = 64;
 /// Range of the width over which a tool's force shading averages.
 inline constexpr double kShadingWidthMin_m = 1e-4;
 inline constexpr double kShadingWidthMax_m = 0.1;
-/// Radius, in quanta, of the sphere that stands for a point tool without a radius.
+/// Radius, in quanta, of the sphere that represents a point tool without a radius.
 inline constexpr double kPointSkin = 0.25;
 /// Largest number of past contact points kept while a rigid tool rests; 88 B each. Six planes
 /// suffice to hold a tool. Beyond it the oldest is dropped (FrameFault::tool_over_capacity).

@@ -161,8 +161,8 @@ public:
                                     FrameFault& faults) noexcept TACTUS_NONBLOCKING;
 
     /// Repeats the query from the tool's new place in the same frame. Triangles of a sphere are
-    /// stored in the memory of the previous query or in `room`, whichever is larger. Returns the
-    /// rest of `room`.
+    /// stored in the larger of the previous query's memory and `room`. Returns the rest of
+    /// `room`.
     [[nodiscard]] SurfaceRoom query_again(const SurfaceRoom& room, const Budgets& budgets,
                                           WorkCounters& work,
                                           FrameFault& faults) noexcept TACTUS_NONBLOCKING;

@@ -101,7 +101,7 @@ public:
     {
         return spec_.force_max_n / spec_.stiffness_n_per_m;
     }
-    /// Speed limit of the proxy or speed of the device, whichever is larger.
+    /// The larger of the speed limit of the proxy and the speed of the device.
     [[nodiscard]] double speed_m_per_s() const noexcept
     {
         return std::max(spec_.speed_max_m_per_s, goal_.velocity_m_per_s.norm());

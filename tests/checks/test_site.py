@@ -15,6 +15,7 @@ sys.dont_write_bytecode = True
 import build  # noqa: E402
 import limits  # noqa: E402
 import reference  # noqa: E402
+import report_keys  # noqa: E402
 
 
 class Manual(unittest.TestCase):
@@ -107,6 +108,49 @@ class Limits(unittest.TestCase):
         self.edit(limits.SOURCE, 'std::uint32_t kMaxTools = sizeof(int);', 'int kOther = 1;')
         code, said = self.run_limits()
         self.assertEqual((code, said), (2, 'limits.py: rt_core/limits.hpp: there is no kMaxTools\n'))
+
+
+class ReportKeys(unittest.TestCase):
+    PAGE = ('# Report format\n\n| key |\n| --- |\n| `schema` |\n\n## work\n\n`a` and `b` each hold:\n\n'
+            '| key | unit |\n| --- | --- |\n| `n` | of `x`, `y` |\n\n## tools\n\n'
+            '| key |\n| --- |\n| `events[].name` |\n| `work` as in [work](#work) |\n')
+    REPORT = {'schema': 1, 'work': {'a': {'n': {'x': 1}}, 'b': {'n': {'y': 2}}},
+              'tools': [{'events': [{'name': 'e'}], 'work': {'a': 1}}, {'events': []}]}
+
+    def faults(self, page=PAGE, **changes):
+        return list(report_keys.faults(page, {**self.REPORT, **changes}))
+
+    def test_a_key_is_in_a_table_or_the_text_of_its_section(self):
+        self.assertEqual(self.faults(), [])
+        self.assertEqual(self.faults(tools=[]), [])
+
+    def test_a_key_that_the_page_lacks_is_named(self):
+        self.assertEqual(self.faults(more={}),
+                         [(1, "has no section and no row for the key 'more'")])
+        self.assertEqual(self.faults(tools=[{'events': [{'name': 1, 'when': 2}], 'work': 1}]),
+                         [(1, "names no key 'tools.events.when'")])
+
+    def test_a_row_without_a_key_is_named_with_its_line(self):
+        page = self.PAGE.replace('| `schema` |', '| `schema` |\n| `old` |')
+        self.assertEqual(self.faults(page), [(6, "no report has the key 'old'")])
+        page = self.PAGE.replace('events[].name', 'events[].title')
+        self.assertIn((19, "no report has the key 'tools.events[].title'"), self.faults(page))
+
+    def test_a_key_of_the_sources_that_the_page_lacks_is_named(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            root = pathlib.Path(scratch)
+            for path, text in ((report_keys.PAGE, self.PAGE),
+                               *((source, '\n{"work", {{"n", 1}}}') for source in
+                                 report_keys.SOURCES)):
+                (root / path).parent.mkdir(parents=True, exist_ok=True)
+                (root / path).write_text(text)
+            said = io.StringIO()
+            with contextlib.redirect_stdout(said):
+                self.assertEqual(report_keys.main([scratch]), 0)
+                (root / report_keys.SOURCES[1]).write_text('\n\n{"odd", 1}')
+                self.assertEqual(report_keys.main([scratch]), 1)
+            self.assertIn(f"{report_keys.SOURCES[1]}:3: {report_keys.PAGE} has no key 'odd'",
+                          said.getvalue())
 
 
 class Pages(unittest.TestCase):

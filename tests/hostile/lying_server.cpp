@@ -147,7 +147,7 @@ private:
 using Turn = std::function<bool(LyingServer& self, std::uint64_t turn)>;
 using Attack = std::function<Turn(LyingServer& self, double number)>;
 
-/// N1: moves towards a tool that is 0.2 to 4 mm away; between poses, and after a rest.
+/// Moves towards a tool that is 0.2 to 4 mm away; between poses, and after a rest.
 Turn strike(double way_m)
 {
     return [=](LyingServer& self, std::uint64_t turn)
@@ -169,7 +169,7 @@ Turn strike(double way_m)
     };
 }
 
-/// N12: moves with the hand on it, against it and away.
+/// Moves with the hand on it, against it and away.
 Turn drag(double speed_m_per_s)
 {
     return [=](LyingServer& self, std::uint64_t turn)
@@ -191,7 +191,7 @@ Turn drag(double speed_m_per_s)
     };
 }
 
-/// N13: changes the material every 60 ms.
+/// Changes the material every 60 ms.
 Turn change_materials()
 {
     return [](LyingServer& self, std::uint64_t turn)
@@ -213,7 +213,7 @@ Turn change_materials()
     };
 }
 
-/// N15: adds and removes the object under the hand, five times a second.
+/// Adds and removes the object under the hand, five times a second.
 Turn come_and_go()
 {
     return [](LyingServer& self, std::uint64_t)
@@ -230,7 +230,7 @@ Turn come_and_go()
     };
 }
 
-/// N14: swings by 1 mm, with false time stamps.
+/// Swings by 1 mm, with false time stamps.
 Turn lie_about_the_time(LyingServer& self)
 {
     auto motion = std::make_shared<dds::Endpoint>(

@@ -7,6 +7,8 @@ set -euo pipefail
 readonly build=$1/spm_build inspect=$1/spm_inspect publish=$1/spm_publish hrtc=$1/hrtc
 readonly keys=$1/tactus-keys tactus=$1/tactus
 readonly check_report=$2 sanitizer=${3#none}
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
+readonly checkout
 # A separate domain on loopback: no foreign models, and none of ours on a real interface.
 readonly domain=${TACTUS_TEST_DOMAIN:-$(($$ % 231))}
 unset CYCLONEDDS_URI
@@ -248,9 +250,10 @@ check_sizes() {
     done
 }
 
-# check_clean FILE: checks the laws of every run; under a sanitizer, which allocates and faults
-# itself, only the presence of the keys.
+# check_clean FILE: checks the laws of every run, and its keys against the page; under a sanitizer,
+# which allocates and faults itself, only the presence of the keys.
 check_clean() {
+    python3 -B "$checkout/docs/site/report_keys.py" "$checkout" "$1" || fault "$1, see above"
     check "$1" schema == 3 realtime.allocations '>=' 0 realtime.page_faults '>=' 0 \
         deadline.overrun '>=' 0
     if [[ -z "$sanitizer" ]]; then
