@@ -34,16 +34,16 @@ constexpr const char* kOfServers = "server.*";
 constexpr const char* kOwn = "{}";
 constexpr const char* kOwnPieces = "{}.*";
 
-/// Topics of edits. Both have the name of the model's server as their partition.
+/// Topics of edits, in the partitions of servers.
 constexpr const char* kEditRequests = "edit_requests";
 constexpr const char* kEdits = "edits";
 
 constexpr std::array kServerWrites{Right{"catalogue", kUnnamed}, Right{"chunks", kAny},
                                    Right{"objects", kOfServers}, Right{"motion", kOfServers},
-                                   Right{kEdits, kOwn}};
+                                   Right{kEdits, kOfServers}};
 constexpr std::array kServerReads{Right{"catalogue", kUnnamed}, Right{"wanted", kAny},
                                   Right{"telemetry", kAny}, Right{"refinement_state", kAny},
-                                  Right{kEditRequests, kOwn}};
+                                  Right{kEditRequests, kOfServers}};
 constexpr std::array kControllerWrites{Right{"wanted", kOwn}, Right{"telemetry", kOwn},
                                        Right{"refinement_state", kOwn}};
 constexpr std::array kControllerReads{Right{"catalogue", kUnnamed}, Right{"chunks", kOwnPieces},
