@@ -48,8 +48,8 @@ constexpr std::array kControllerWrites{Right{"wanted", kOwn}, Right{"telemetry",
                                        Right{"refinement_state", kOwn}};
 constexpr std::array kControllerReads{Right{"catalogue", kUnnamed}, Right{"chunks", kOwnPieces},
                                       Right{"objects", kOfServers}, Right{"motion", kOfServers},
-                                      Right{kEdits, kAny}};
-constexpr std::array kEditorWrites{Right{kEditRequests, kAny}};
+                                      Right{kEdits, kOfServers}};
+constexpr std::array kEditorWrites{Right{kEditRequests, kOfServers}};
 constexpr std::array kViewerReads{Right{"telemetry", kAny}, Right{"refinement_state", kAny}};
 
 struct Rights

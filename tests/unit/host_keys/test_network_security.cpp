@@ -155,17 +155,17 @@ TEST(Rights, are_the_least_of_each_role)
               (std::set<std::string>{"publish/wanted hand-1", "publish/telemetry hand-1",
                                      "publish/refinement_state hand-1", "subscribe/catalogue ",
                                      "subscribe/chunks hand-1.*", "subscribe/objects server.*",
-                                     "subscribe/motion server.*", "subscribe/edits *"}));
+                                     "subscribe/motion server.*", "subscribe/edits server.*"}));
     EXPECT_EQ(rights_of(keys::Role::server, "station"),
               (std::set<std::string>{
                   "publish/catalogue ", "publish/chunks *", "publish/objects server.*",
-                  "publish/motion server.*", "publish/edits station", "subscribe/catalogue ",
+                  "publish/motion server.*", "publish/edits server.*", "subscribe/catalogue ",
                   "subscribe/wanted *", "subscribe/telemetry *", "subscribe/refinement_state *",
-                  "subscribe/edit_requests station"}));
+                  "subscribe/edit_requests server.*"}));
     EXPECT_EQ(rights_of(keys::Role::editor, "desk-2"),
-              (std::set<std::string>{"publish/edit_requests *", "subscribe/catalogue ",
+              (std::set<std::string>{"publish/edit_requests server.*", "subscribe/catalogue ",
                                      "subscribe/chunks desk-2.*", "subscribe/objects server.*",
-                                     "subscribe/motion server.*", "subscribe/edits *"}));
+                                     "subscribe/motion server.*", "subscribe/edits server.*"}));
 }
 
 TEST(Rights, are_for_one_certificate_and_its_time)
