@@ -35,7 +35,7 @@ of_report() {
 }
 
 # Two hands carve; a third one touches the model from the beginning to the end.
-start_publisher bumpy.spm --edits --save carved.spm
+start_publisher bumpy.spm --edits --edit-room 16384 --save carved.spm
 start_hrtc --model bumpy --motion free --pool-mib 16 --duration 600 --report watching.json
 watching=$controller
 mv hrtc.log watching.log
@@ -70,8 +70,8 @@ done
 # The saved file is a sound model with that revision, and has lost that volume.
 "$inspect" carved.spm --json >carved.json || fault 'carved.spm is not sound'
 check carved.json revision == "$(of_edits ' \([0-9]*\) edits\{0,1\},')" is_closed == 1
-"$inspect" bumpy.spm --extract before.obj >/dev/null
-"$inspect" carved.spm --extract after.obj >/dev/null
+"$inspect" bumpy.spm --extract -o before.obj >/dev/null
+"$inspect" carved.spm --extract -o after.obj >/dev/null
 awk -v before="$(volume_mm3 before.obj)" -v after="$(volume_mm3 after.obj)" -v removed="$removed" \
     'BEGIN { off = before - after - removed
              exit !(before > after && off < 0.02 * removed && off > -0.02 * removed) }' \

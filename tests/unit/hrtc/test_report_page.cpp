@@ -52,7 +52,7 @@ Json report_of(const std::string& model)
         "realtime": {"allocations": 0, "page_faults": 97, "virtual_time": false,
                      "system_calls_trapped": true, "system_calls_in_frame": 0,
                      "system_calls_outside": 101},
-        "recording": null, "trace": null, "telemetry": {"sent": 103},
+        "recording": null, "trace": null, "carving": null, "telemetry": {"sent": 103},
         "force": {"max_n": 1.25, "max_step_n": 0.75, "contact_share": 0.5, "force_share": 0.4375,
                   "data_limited_share": 0.03125},
         "safety": {"supervisor_brakes": 107,
