@@ -160,6 +160,8 @@ tactus_module(host_tools/simplify ${host_layer} host_tools/mesh)
 tactus_module(host_tools/encode ${host_layer} host_tools/mesh host_tools/simplify)
 # A mesh in memory as a model's file, as spm_build and a World make it.
 tactus_module(host_tools/build ${host_layer} host_tools/mesh host_tools/simplify host_tools/encode)
+# A model's surface while it is edited: cut, filled and moved.
+tactus_module(host_tools/edit ${host_layer} host_tools/mesh host_tools/encode)
 # Local servers of HTTP: metrics, and the streams of a viewer.
 tactus_module(host_tools/web ${host_layer})
 # The library for C and what calls C.

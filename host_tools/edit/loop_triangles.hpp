@@ -16,7 +16,7 @@ struct LoopCorner
 {
     std::int64_t x{0};
     std::int64_t y{0};
-    std::uint32_t name{0}; ///< Of the corner; corners of equal names have equal coordinates.
+    std::uint32_t name{0}; ///< Name of the corner; corners of equal names have equal coordinates.
 };
 
 using CornerLoop = std::vector<LoopCorner>;

@@ -51,7 +51,10 @@ class PieceMerger
 {
 public:
     PieceMerger(std::vector<SurfaceFace>& faces, std::span<const GridPoint> fixed, double slack)
-        : faces_(faces), slack_(slack), sliver_(std::max(kSliverHeight_quanta, kSliverShare * slack)), is_alive_(faces.size(), true)
+        : faces_(faces)
+        , slack_(slack)
+        , sliver_(std::max(kSliverHeight_quanta, kSliverShare * slack))
+        , is_alive_(faces.size(), true)
     {
         std::unordered_map<GridPoint, std::uint32_t, MergePointHash> found;
         for (std::uint32_t face = 0; face < faces.size(); ++face)
@@ -355,10 +358,10 @@ private:
     double slack_;
     double sliver_; ///< Height of a triangle whose normal does not count.
     std::vector<Vec3> points_;
-    std::vector<std::array<std::uint32_t, 3>> corners_; ///< By face, as indices of points_.
+    std::vector<std::array<std::uint32_t, 3>> corners_; ///< Corners by face, as indices of points_.
     std::vector<std::vector<std::uint32_t>> stars_;     ///< Faces by point.
-    std::vector<bool> is_alive_;                        ///< By face.
-    std::vector<bool> is_fixed_;                        ///< By point.
+    std::vector<bool> is_alive_;                        ///< One entry a face.
+    std::vector<bool> is_fixed_;                        ///< One entry a point.
 
     // Scratch.
     std::vector<std::uint32_t> ring_;

@@ -764,21 +764,22 @@ private:
     CutSense sense_;
     bool met_zero_{false};
 
-    std::vector<Vec3> normals_; ///< Of facets, not of unit length.
+    std::vector<Vec3> normals_; ///< Normals of facets, not of unit length.
     std::vector<ToolEdge> tool_edges_;
     std::vector<std::uint32_t> facet_edges_; ///< Three for each facet, in the order of its corners.
-    std::vector<std::uint32_t> tool_nodes_;  ///< By vertex of the polyhedron.
+    std::vector<std::uint32_t> tool_nodes_;  ///< One entry a vertex of the polyhedron.
     std::vector<std::vector<Step>> facet_steps_;
-    std::vector<int> windings_; ///< By vertex of the polyhedron.
+    std::vector<int> windings_; ///< One entry a vertex of the polyhedron.
 
-    std::vector<Vec3> vertices_;                        ///< Of the surface, each position once.
-    std::vector<std::array<std::uint32_t, 3>> corners_; ///< Of faces, as indices of vertices_.
-    std::vector<std::int8_t> sides_;                    ///< By vertex, then by facet.
-    std::vector<std::uint8_t> is_inside_;               ///< By vertex.
-    std::vector<std::uint32_t> vertex_nodes_;           ///< By vertex.
-    std::vector<bool> may_meet_;                        ///< By face.
-    std::vector<bool> is_gone_;                         ///< By face.
-    std::vector<std::vector<std::uint32_t>> nodes_of_;  ///< Nodes on the polyhedron, by face.
+    std::vector<Vec3> vertices_; ///< Vertices of the surface, each position once.
+    std::vector<std::array<std::uint32_t, 3>>
+        corners_;                             ///< Corners of faces, as indices of vertices_.
+    std::vector<std::int8_t> sides_;          ///< Sorted by vertex, then by facet.
+    std::vector<std::uint8_t> is_inside_;     ///< One entry a vertex.
+    std::vector<std::uint32_t> vertex_nodes_; ///< One entry a vertex.
+    std::vector<bool> may_meet_;              ///< One entry a face.
+    std::vector<bool> is_gone_;               ///< One entry a face.
+    std::vector<std::vector<std::uint32_t>> nodes_of_; ///< Nodes on the polyhedron, by face.
     std::unordered_map<std::uint64_t, Edge> edges_;
     /// Face, edge of the polyhedron, and place among the edge's crossings; ascending by face.
     std::vector<std::array<std::uint32_t, 3>> face_crossings_;

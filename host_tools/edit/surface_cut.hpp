@@ -4,6 +4,7 @@
 
 #include "host_tools/edit/convex_hull.hpp"
 #include "host_tools/edit/surface_faces.hpp"
+#include "host_tools/edit/sweep.hpp"
 #include "rt_core/math/triangle.hpp"
 
 #include <cstdint>
@@ -22,12 +23,6 @@ struct CutFace
     /// True for a face that bounds the solid of an open surface only in thought. It is neither cut
     /// nor removed.
     bool is_wall{false};
-};
-
-enum class CutSense : std::uint8_t
-{
-    carve, ///< The polyhedron is taken from the solid.
-    fill,  ///< The polyhedron is joined to the solid.
 };
 
 /// A new triangle: a part of a face, or of the polyhedron's surface.

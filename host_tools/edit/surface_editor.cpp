@@ -25,7 +25,7 @@ namespace tactus
 namespace
 {
 
-/// Number of times that a region is shifted anew if an exact decision meets zero.
+/// Number of times that a region is shifted again if an exact decision meets zero.
 constexpr std::uint64_t kShifts = 16;
 /// Largest number of faces that are compared in the search for a near one.
 constexpr std::size_t kBucketSamples = 256;
@@ -244,7 +244,17 @@ Result<SurfaceChange, Refusal> SurfaceEditor::cut(const Sweep& sweep, CutSense s
         {
             touched.push_back(to_triangle(faces_[id].corners));
         }
-        withdraw_from(touched, sense == CutSense::carve, region.value());
+        std::unordered_map<const void*, bool> known;
+        const auto is_solid = [&](const Vec3& point)
+        {
+            const auto [at, is_new] = known.try_emplace(&point);
+            if (is_new)
+            {
+                at->second = is_closed_ && winding_of(point).value_or(0) > 0;
+            }
+            return at->second;
+        };
+        withdraw_from(touched, sense, is_solid, region.value());
         if (region.value().polyhedron.facets.empty())
         {
             return SurfaceChange{};

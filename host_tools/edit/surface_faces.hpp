@@ -60,7 +60,7 @@ struct GridBox
 struct SurfaceFace
 {
     GridTriangle corners{};
-    std::uint32_t bucket{0}; ///< As AddedFace::bucket.
+    std::uint32_t bucket{0}; ///< Meaning as AddedFace::bucket.
     /// Distance by which merging has moved this part of the surface at most; 0 for a source face.
     float moved_quanta{0.0F};
 };

@@ -23,6 +23,8 @@ constexpr double kLeastThickness_quanta = 16.0;
 constexpr double kFarthest_quanta = 0x1p30;
 /// Points that lie at most this far outside the hull of the others are left out.
 constexpr double kHullMargin_quanta = 4.0 * kSweptShift_quanta;
+/// Least cosine between the normals of a facet and a face that it runs along, of either sign.
+constexpr double kAlongCosine = 0.8;
 /// Edges into which each edge of an icosahedron is cut for a sphere.
 constexpr int kSphereCuts = 3;
 
@@ -86,6 +88,28 @@ std::vector<Vec3> sphere_points()
         point *= 2.0 / (1.0 + inner);
     }
     return points;
+}
+
+/// True if a corner of one is within `distance` of the other.
+bool are_near(const Triangle& a, const Triangle& b, double distance)
+{
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+    {
+        const auto [low_a, high_a] = std::minmax({a[0][axis], a[1][axis], a[2][axis]});
+        const auto [low_b, high_b] = std::minmax({b[0][axis], b[1][axis], b[2][axis]});
+        if (low_a > high_b + distance || low_b > high_a + distance)
+        {
+            return false;
+        }
+    }
+    const auto reaches = [&](const Triangle& from, const Triangle& to)
+    {
+        return std::any_of(
+            from.begin(), from.end(),
+            [&](const Vec3& corner)
+            { return closest_point_on_triangle(corner, to).distance_sq < distance * distance; });
+    };
+    return reaches(a, b) || reaches(b, a);
 }
 
 std::optional<std::string> fault_of(const Sweep& sweep)
@@ -172,47 +196,57 @@ Result<SweptRegion, Refusal> swept_region(const Sweep& sweep, const SurfaceGrid&
     return region;
 }
 
-void withdraw_from(std::span<const Triangle> faces, bool is_inward, SweptRegion& region)
+void withdraw_from(std::span<const Triangle> faces, CutSense sense,
+                   const std::function<bool(const Vec3&)>& is_solid, SweptRegion& region)
 {
     std::vector<Vec3>& vertices = region.polyhedron.vertices;
-    std::vector<Vec3> normals(vertices.size(), Vec3(0.0, 0.0, 0.0));
-    for (const auto& facet : region.polyhedron.facets)
-    {
-        const Vec3& a = vertices[facet[0]];
-        const Vec3 normal = (vertices[facet[1]] - a).cross(vertices[facet[2]] - a);
-        for (const std::uint32_t vertex : facet)
-        {
-            normals[vertex] += normal;
-        }
-    }
     const double touch = region.slack_quanta + kSweptTouch_quanta;
     const double move = kSweptMoveShare * region.slack_quanta + kSweptMove_quanta;
-    const auto touches = [&](const Vec3& point, const Triangle& face)
+    std::vector<Vec3> normals(vertices.size(), Vec3(0.0, 0.0, 0.0));
+    std::vector<double> moves(vertices.size(), 0.0);
+    std::vector<Vec3> face_normals;
+    for (const Triangle& face : faces)
     {
-        for (Eigen::Index axis = 0; axis < 3; ++axis)
+        face_normals.push_back((face[1] - face[0]).cross(face[2] - face[0]).normalized());
+    }
+    for (const auto& corners : region.polyhedron.facets)
+    {
+        const Triangle facet{vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]};
+        const Vec3 area = (facet[1] - facet[0]).cross(facet[2] - facet[0]);
+        const Vec3 normal = area.normalized();
+        for (const std::uint32_t vertex : corners)
         {
-            const auto [low, high] = std::minmax({face[0][axis], face[1][axis], face[2][axis]});
-            if (point[axis] < low - touch || point[axis] > high + touch)
+            normals[vertex] += area;
+        }
+        for (std::size_t i = 0; i < faces.size(); ++i)
+        {
+            const double cosine = normal.dot(face_normals[i]);
+            if (std::abs(cosine) < kAlongCosine || !are_near(facet, faces[i], touch))
             {
-                return false;
+                continue;
+            }
+            const double outward = (sense == CutSense::carve) == (cosine > 0.0) ? move : -move;
+            for (const std::uint32_t vertex : corners)
+            {
+                const bool is_near =
+                    closest_point_on_triangle(vertices[vertex], faces[i]).distance_sq <
+                    touch * touch;
+                if (moves[vertex] == 0.0 && (is_near || !is_solid(vertices[vertex])))
+                {
+                    moves[vertex] = outward;
+                }
             }
         }
-        return closest_point_on_triangle(point, face).distance_sq < touch * touch;
-    };
-    bool is_moved = false;
+    }
+    if (std::all_of(moves.begin(), moves.end(), [](double by) { return by == 0.0; }))
+    {
+        return;
+    }
     for (std::size_t i = 0; i < vertices.size(); ++i)
     {
-        if (std::any_of(faces.begin(), faces.end(),
-                        [&](const Triangle& face) { return touches(vertices[i], face); }))
-        {
-            vertices[i] += (is_inward ? -move : move) * normals[i].normalized();
-            is_moved = true;
-        }
+        vertices[i] += moves[i] * normals[i].normalized();
     }
-    if (is_moved)
-    {
-        region.polyhedron = convex_hull(std::vector<Vec3>(vertices), kHullMargin_quanta);
-    }
+    region.polyhedron = convex_hull(std::vector<Vec3>(vertices), kHullMargin_quanta);
 }
 
 } // namespace tactus

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,12 @@ namespace tactus
 
 /// Largest number of vertices of a hull that edits a surface. A sweep with more is refused.
 inline constexpr std::size_t kMaxSweptVertices = 64;
+
+enum class CutSense : std::uint8_t
+{
+    carve, ///< The region is taken from the solid.
+    fill,  ///< The region is joined to the solid.
+};
 
 /// A convex tool that moves along a straight line without rotation: all points within the radius of
 /// the core's hull. One point of core is a sphere, two are a capsule, 4 to kMaxSweptVertices are a
@@ -49,7 +56,9 @@ struct SurfaceGrid
 
 /// Region of a sweep in quanta of the model's grid. A round tool's polyhedron contains the tool of
 /// radius (1 - kSweptRoundness) x radius_m, and lies in that of (1 + kSweptRoundness) x radius_m;
-/// a hull is itself. Both within kSweptShift_quanta, and except where it was withdrawn.
+/// a hull is itself. Both within kSweptShift_quanta, and except where it was withdrawn. With
+/// merging and withdrawal, an edited surface lies within 3 x kSweptRoundness x radius_m + 8 quanta
+/// of the tool's surface.
 struct SweptRegion
 {
     Polyhedron polyhedron;
@@ -74,8 +83,11 @@ inline constexpr double kSweptMove_quanta = 3.0;
 [[nodiscard]] Result<SweptRegion, Refusal> swept_region(const Sweep& sweep, const SurfaceGrid& grid,
                                                         std::uint64_t seed);
 
-/// Moves the vertices near a face as above, against the region's normal (carve) or along it (fill).
-/// The region's surface then does not run along a face that an earlier sweep left there.
-void withdraw_from(std::span<const Triangle> faces, bool is_inward, SweptRegion& region);
+/// Moves the region's facets that run along a face, by moving their vertices along the region's
+/// normal: away from what an earlier sweep left there, or through a face that would remain as a
+/// film. A vertex that is neither near a face nor in the air stays. `is_solid` tells whether a
+/// point lies in the solid.
+void withdraw_from(std::span<const Triangle> faces, CutSense sense,
+                   const std::function<bool(const Vec3&)>& is_solid, SweptRegion& region);
 
 } // namespace tactus

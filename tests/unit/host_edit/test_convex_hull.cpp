@@ -65,8 +65,8 @@ std::pair<double, bool> filled(const std::vector<CornerLoop>& loops)
         const LoopCorner& p = corners[a];
         const LoopCorner& q = corners[b];
         const LoopCorner& r = corners[c];
-        area += std::abs(static_cast<double>((q.x - p.x) * (r.y - p.y) -
-                                             (q.y - p.y) * (r.x - p.x)));
+        area +=
+            std::abs(static_cast<double>((q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x)));
     }
     const bool is_sum = std::all_of(counts.begin(), counts.end(),
                                     [](const auto& edge) { return edge.second == 0; });

@@ -100,11 +100,11 @@ TEST_F(HrtcOptions, of_a_file_are_refused_with_their_place_in_it)
         {"[[tool]]\ndevice-limits = \"mass_kg=0\"",
          "bad.toml:2: device-limits of tool 0: device: mass_kg must be finite and > 0"},
         {"[[tool]]\nshpae = \"point\"",
-         "--config: bad.toml:2: [[tool]]: 'shpae' is not shape, mass, fixture, device, "
-         "device-limits, device-frame or motion"},
+         "--config: bad.toml:2: [[tool]]: 'shpae' is not shape, mass, fixture, edit, "
+         "device, device-limits, device-frame or motion"},
         {"rate = 1000\n[[tool]]\nrate = 1000",
-         "--config: bad.toml:3: [[tool]]: 'rate' is not shape, mass, fixture, device, "
-         "device-limits, device-frame or motion; other options go above the tables"},
+         "--config: bad.toml:3: [[tool]]: 'rate' is not shape, mass, fixture, edit, "
+         "device, device-limits, device-frame or motion; other options go above the tables"},
         {"[[tool]]\nmass = 1\nshape = \"point\"\nmass = 2",
          "--config: bad.toml:2: [[tool]]: mass is given twice"},
         {"tools = 1\n[[tool]]\n[[tool]]", "[[tool]]: 2 given; at most 1 tool"},
