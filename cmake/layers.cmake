@@ -174,8 +174,6 @@ tactus_module(host_tools/spm_build ${host_layer} platform/program host_tools/mes
 # The program that looks into a model.
 tactus_module(host_tools/spm_inspect ${host_layer} platform/program host_tools/mesh
     host_tools/encode)
-# Changes of models' surfaces.
-tactus_module(host_tools/edit ${host_layer} host_tools/mesh host_tools/encode)
 # The program that serves models and scenes.
 tactus_module(host_tools/spm_publish ${host_layer} platform/program host_tools/mesh
     host_tools/scene host_tools/web host_tools/encode host_tools/edit host_tools/build)

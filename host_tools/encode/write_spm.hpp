@@ -34,7 +34,7 @@ struct EncodeOptions
     /// kMaxRegions. [default: at most 16 regions along the longest axis]
     std::optional<double> region_size_m;
     std::uint32_t revision{0}; ///< HeaderFields::revision.
-    unsigned threads{1}; ///< Number of threads, at least 1; the file does not depend on it.
+    unsigned threads{1};       ///< Number of threads, at least 1; the file does not depend on it.
     /// Callback on the calling thread as chunks are written, with their number so far and in total.
     std::function<void(std::size_t done, std::size_t total)> progress{};
 };

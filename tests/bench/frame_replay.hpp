@@ -64,8 +64,8 @@ struct FrameWork
     std::uint64_t contacts{0};    ///< Frames in contact.
     std::uint64_t uncertified{0}; ///< Frames in contact without an exact answer.
     std::uint64_t edits_refused{0};
-    std::uint64_t open{0};        ///< Frames with neither an exact nor a separated answer.
-    ModelOutput model;            ///< State after the last frame.
+    std::uint64_t open{0}; ///< Frames with neither an exact nor a separated answer.
+    ModelOutput model;     ///< State after the last frame.
 
     [[nodiscard]] double per_frame(std::uint64_t count) const
     {
