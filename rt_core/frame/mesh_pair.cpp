@@ -338,6 +338,14 @@ void MeshPair::query(const RegionOfInterest& region_of_interest, double certifie
     meeting_m_ = answer.nearest_point_m;
 }
 
+void MeshPair::forget_refinement() noexcept
+{
+    for (RefineMemory& memory : tool_memories_)
+    {
+        memory.is_known = false;
+    }
+}
+
 void MeshPair::note_lower(double lower_m) noexcept
 {
     if (lower_m > 0.0)

@@ -83,6 +83,8 @@ public:
 
     /// Records a lower bound on the distance; above 0 proves that no faces meet.
     void note_lower(double lower_m) noexcept TACTUS_NONBLOCKING;
+    /// Ends the certificates of the tool's faces, since the object has another surface.
+    void forget_refinement() noexcept TACTUS_NONBLOCKING;
     /// Sets the report of a pair that is proven apart, without a query.
     void rest(ContactReport& contacts) noexcept TACTUS_NONBLOCKING;
 

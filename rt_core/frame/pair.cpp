@@ -571,6 +571,10 @@ void Pair::forget_refinement() noexcept
     {
         memory.is_known = false;
     }
+    if (mesh_ != nullptr)
+    {
+        mesh_->forget_refinement();
+    }
 }
 
 void Pair::doubt() noexcept

@@ -682,8 +682,7 @@ private:
                      " and " + std::to_string(faces.face.value));
             }
         }
-        // A tool with a force that faces were added over may name fewer (docs/edits.md).
-        if (report.is_complete && spec_.query_only && report.meeting.size() != meeting.size())
+        if (report.is_complete && report.meeting.size() != meeting.size())
         {
             flag(std::to_string(report.meeting.size()) + " pairs are said to be all of " +
                  std::to_string(meeting.size()));
