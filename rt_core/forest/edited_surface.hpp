@@ -74,7 +74,7 @@ public:
 private:
     static constexpr std::uint32_t kBits = 64;
 
-    [[nodiscard]] bool is_present(FaceId face) const noexcept;
+    [[nodiscard]] bool is_present(FaceId face) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_sound(const AddedFace& face) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool try_remove(std::span<const FaceId> faces) noexcept TACTUS_NONBLOCKING;
     void restore(std::span<const FaceId> faces) noexcept TACTUS_NONBLOCKING;
