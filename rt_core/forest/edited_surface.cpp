@@ -141,8 +141,9 @@ bool EditedSurface::is_sound(const AddedFace& face) const noexcept
         for (std::size_t axis = 0; axis < 3; ++axis)
         {
             const float quanta = corner[axis] / quantum_m_; // Exact: a power of two.
-            if (!(quanta >= 0.0F && quanta <= static_cast<float>(extent_quanta_[axis])) ||
-                quanta != static_cast<float>(static_cast<std::int32_t>(quanta)))
+            const bool is_inside =
+                quanta >= 0.0F && quanta <= static_cast<float>(extent_quanta_[axis]);
+            if (!is_inside || quanta != static_cast<float>(static_cast<std::int32_t>(quanta)))
             {
                 return false;
             }
@@ -178,7 +179,7 @@ void EditedSurface::restore(std::span<const FaceId> faces) noexcept
 /// Adds a box; if there are too many, the two whose union is smallest become one.
 void EditedSurface::add_box(const Aabb& box) noexcept
 {
-    for (Aabb& known : boxes_)
+    for (const Aabb& known : boxes_)
     {
         if (union_of(known, box) == known)
         {

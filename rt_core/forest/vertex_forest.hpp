@@ -171,9 +171,10 @@ private:
         outdated,
         hidden,
     };
-    [[nodiscard]] Standing standing_of(const ActiveFace& face, ErrorCode error,
-                                       const std::array<Vec3f, 3>& corners_m) const noexcept;
-    [[nodiscard]] bool is_final(const ActiveFace& face) const noexcept;
+    [[nodiscard]] Standing
+    standing_of(const ActiveFace& face, ErrorCode error,
+                const std::array<Vec3f, 3>& corners_m) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool is_final(const ActiveFace& face) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_added(FaceId face) const noexcept
     {
         return edits_ != nullptr && edits_->is_added(face);

@@ -123,7 +123,7 @@ struct FrameInput
     Budgets budgets;
     std::int64_t now_ns{0}; ///< Time on the clock of ObjectPose::arrival_ns.
     /// Edits of models' surfaces, applied after `changes`, in order; at most kMaxEditsPerFrame.
-    std::span<const SurfaceEdit> edits{};
+    std::span<const SurfaceEdit> edits{}; // NOLINT(readability-redundant-member-init): for g++.
 };
 
 /// Stages of a frame, in order; each has a time in the report.
