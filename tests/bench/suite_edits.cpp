@@ -64,7 +64,7 @@ Carving carve_along(const ModelStore& store, FrameRun& run, std::uint32_t room)
     std::size_t first_free = 0;
     for (std::size_t i = run.lead_in; i + kFramesAnEdit < run.goals_m.size(); i += kFramesAnEdit)
     {
-        Sweep sweep;
+        tactus::Sweep sweep;
         sweep.core_m = {Vec3(0.0, 0.0, 0.0)};
         sweep.radius_m = radius_m * (1.0 + kDepth);
         sweep.from_m = origin_m + run.goals_m[i];
