@@ -228,11 +228,11 @@ Suite edits_suite()
     return {"edits", []
             {
                 return std::vector<Case>{make_case("bunny-69k", When::always, run_edits_case,
-                                                   EditsCase{kBunny, 4'000, 8, 65'536}),
+                                                   EditsCase{kBunny, 4'000, 32, 65'536}),
                                          make_case("bunny-1.1M", When::full_only, run_edits_case,
-                                                   EditsCase{kFineBunny, 60'000, 32, 262'144}),
+                                                   EditsCase{kFineBunny, 60'000, 96, 262'144}),
                                          make_case("tiny", When::named_only, run_edits_case,
-                                                   EditsCase{kTiny, 500, 4, 16'384})};
+                                                   EditsCase{kTiny, 500, 16, 16'384})};
             }};
 }
 
