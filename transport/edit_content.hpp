@@ -28,19 +28,4 @@ struct EditContent
     }
 };
 
-/// True if the box holds at least a point and its coordinates are finite.
-[[nodiscard]] inline bool is_sound(const Aabb& box) noexcept
-{
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        // False for NaN, too.
-        if (!(box.low[axis] >= -Aabb::kHuge && box.low[axis] <= box.high[axis] &&
-              box.high[axis] <= Aabb::kHuge))
-        {
-            return false;
-        }
-    }
-    return true;
-}
-
 } // namespace tactus

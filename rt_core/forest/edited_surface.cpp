@@ -3,7 +3,6 @@
 #include "rt_core/forest/edited_surface.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace tactus
@@ -48,7 +47,7 @@ EditedSurface::EditedSurface(Arena& arena, const ModelHeader& header, std::uint3
     }
     for (std::uint32_t slot = 0; slot < room; ++slot)
     {
-        flip({face_ids_ + slot});
+        flip(FaceId{face_ids_ + slot});
     }
 }
 
@@ -76,50 +75,24 @@ std::optional<EditRefusal> EditedSurface::take(const SurfaceEdit& edit) noexcept
     {
         return EditRefusal::unknown_face;
     }
-    const bool has_source =
-        std::ranges::any_of(edit.removed, [&](FaceId face) { return !is_added(face); });
-    const Aabb& box = edit.removed_m;
-    bool is_good = !has_source;
-    if (has_source)
+    const auto gone = static_cast<std::uint32_t>(
+        std::ranges::count_if(edit.removed, [&](FaceId face) { return is_added(face); }));
+    const bool has_source = gone < edit.removed.size();
+    const bool has_good_box = has_source ? is_sound(edit.removed_m) : edit.removed_m == Aabb{};
+    if (!has_good_box || !try_add(edit.added))
     {
-        is_good = true;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-        {
-            is_good = is_good && box.low[axis] <= box.high[axis] && std::isfinite(box.low[axis]) &&
-                      std::isfinite(box.high[axis]);
-        }
-    }
-    std::size_t come = 0;
-    for (; is_good && come < edit.added.size(); ++come)
-    {
-        const AddedFace& face = edit.added[come];
-        is_good = is_sound(face) && is_removed(id_of(face));
-        if (!is_good)
-        {
-            break;
-        }
-        flip(id_of(face));
-    }
-    if (!is_good)
-    {
-        for (const AddedFace& face : edit.added.first(come))
-        {
-            flip(id_of(face));
-        }
-        restore(edit.removed);
+        flip_all(edit.removed);
         return EditRefusal::bad_face;
     }
     for (const AddedFace& face : edit.added)
     {
         added_[face.slot] = face;
     }
-    const auto gone = static_cast<std::uint32_t>(
-        std::ranges::count_if(edit.removed, [&](FaceId face) { return is_added(face); }));
     added_count_ = added_count_ - gone + static_cast<std::uint32_t>(edit.added.size());
     added_max_ = std::max(added_max_, added_count_);
     if (has_source)
     {
-        add_box(box);
+        add_box(edit.removed_m);
     }
     revision_ = edit.revision;
     return std::nullopt;
@@ -130,7 +103,7 @@ bool EditedSurface::is_present(FaceId face) const noexcept
     return face.value < face_ids_ + added_.size() && !is_removed(face);
 }
 
-bool EditedSurface::is_sound(const AddedFace& face) const noexcept
+bool EditedSurface::fits(const AddedFace& face) const noexcept
 {
     if (face.slot >= added_.size() || face.bucket >= kBucketEnd)
     {
@@ -160,7 +133,7 @@ bool EditedSurface::try_remove(std::span<const FaceId> faces) noexcept
     {
         if (faces[i].is_none() || !is_present(faces[i]))
         {
-            restore(faces.first(i));
+            flip_all(faces.first(i));
             return false;
         }
         flip(faces[i]);
@@ -168,7 +141,26 @@ bool EditedSurface::try_remove(std::span<const FaceId> faces) noexcept
     return true;
 }
 
-void EditedSurface::restore(std::span<const FaceId> faces) noexcept
+/// Marks the slots of all these faces as used. False, with nothing changed, if a face is not sound
+/// or its slot is used, also by an earlier one of them.
+bool EditedSurface::try_add(std::span<const AddedFace> faces) noexcept
+{
+    for (std::size_t i = 0; i < faces.size(); ++i)
+    {
+        if (!fits(faces[i]) || !is_removed(id_of(faces[i])))
+        {
+            for (const AddedFace& face : faces.first(i))
+            {
+                flip(id_of(face));
+            }
+            return false;
+        }
+        flip(id_of(faces[i]));
+    }
+    return true;
+}
+
+void EditedSurface::flip_all(std::span<const FaceId> faces) noexcept
 {
     for (const FaceId face : faces)
     {

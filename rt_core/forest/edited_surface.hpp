@@ -75,9 +75,10 @@ private:
     static constexpr std::uint32_t kBits = 64;
 
     [[nodiscard]] bool is_present(FaceId face) const noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] bool is_sound(const AddedFace& face) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool fits(const AddedFace& face) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool try_remove(std::span<const FaceId> faces) noexcept TACTUS_NONBLOCKING;
-    void restore(std::span<const FaceId> faces) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool try_add(std::span<const AddedFace> faces) noexcept TACTUS_NONBLOCKING;
+    void flip_all(std::span<const FaceId> faces) noexcept TACTUS_NONBLOCKING;
     void add_box(const Aabb& box) noexcept TACTUS_NONBLOCKING;
     void flip(FaceId face) noexcept;
 

@@ -59,6 +59,21 @@ struct Aabb
     }
 };
 
+/// True if the box holds at least a point and its coordinates are finite; false for NaN.
+[[nodiscard]] constexpr bool is_sound(const Aabb& box) noexcept
+{
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const bool is_range = box.low[axis] >= -Aabb::kHuge && box.low[axis] <= box.high[axis] &&
+                              box.high[axis] <= Aabb::kHuge;
+        if (!is_range)
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
 /// True if the boxes have a point in common.
 [[nodiscard]] constexpr bool do_meet(const Aabb& a, const Aabb& b) noexcept
 {

@@ -49,7 +49,9 @@ enum class EditRefusal : std::uint8_t
     wrong_revision, ///< Not the number after that of the model's last edit.
     too_large,      ///< More than kMaxEditFaces faces.
     unknown_face,   ///< A removed face is not part of the surface.
-    bad_face,       ///< An added face has a used or too large slot, or leaves the model's box.
+    /// An added face has a used or too large slot, or leaves the model's box; or the box of the
+    /// removed source faces is none.
+    bad_face,
 };
 inline constexpr std::size_t kEditRefusals = 6;
 /// Names of the reasons, in the order of EditRefusal.

@@ -112,6 +112,15 @@ public:
         rig_->edit(edit.view());
         soup.apply(edit);
     }
+    /// Adds faces equal to these source faces.
+    void add_equals(OwnedEdit& edit, const std::vector<std::uint32_t>& faces)
+    {
+        for (const std::uint32_t face : faces)
+        {
+            const SourceFace& source = soup.source().faces[face];
+            ASSERT_TRUE(author.add(edit, source.corners, source.bucket));
+        }
+    }
     /// Top faces with their middle within a distance of the tool's place.
     [[nodiscard]] std::vector<std::uint32_t> top_faces(double within_m) const
     {
@@ -181,11 +190,7 @@ TEST(EditEffects, a_face_that_is_added_over_a_tool_makes_no_force_until_the_tool
         sut.step(PressedPlate::kPressed_m);
     }
     OwnedEdit fill = sut.author.removal_of({});
-    for (const std::uint32_t face : hole)
-    {
-        const SourceFace& source = sut.soup.source().faces[face];
-        ASSERT_TRUE(sut.author.add(fill, source.corners, source.bucket));
-    }
+    ASSERT_NO_FATAL_FAILURE(sut.add_equals(fill, hole));
     sut.send(fill);
     for (int i = 0; i < 100; ++i)
     {
@@ -210,11 +215,7 @@ TEST(EditEffects, equal_faces_in_place_of_the_touched_ones_are_felt_as_nothing)
     const Vec3 before_n = sut.sent_n;
     const std::vector<std::uint32_t> touched = sut.top_faces(2.0 * PressedPlate::kRadius_m);
     OwnedEdit edit = sut.author.removal_of(touched);
-    for (const std::uint32_t face : touched)
-    {
-        const SourceFace& source = sut.soup.source().faces[face];
-        ASSERT_TRUE(sut.author.add(edit, source.corners, source.bucket));
-    }
+    ASSERT_NO_FATAL_FAILURE(sut.add_equals(edit, touched));
     sut.send(edit);
     for (int i = 0; i < 100; ++i)
     {

@@ -48,8 +48,7 @@ protected:
 
     /// Takes an edit with the next number.
     std::optional<EditRefusal> take(const std::vector<FaceId>& removed,
-                                    const std::vector<AddedFace>& added,
-                                    const Aabb& box = box_at(0.0F))
+                                    const std::vector<AddedFace>& added, const Aabb& box = {})
     {
         return sut_->take({ModelId{0}, sut_->revision() + 1, removed, added, box});
     }
@@ -96,7 +95,7 @@ TEST_F(EditedSurfaceTest, fills_and_empties_its_room)
 
 TEST_F(EditedSurfaceTest, refuses_what_an_edit_cannot_be_and_keeps_everything)
 {
-    ASSERT_EQ(take({FaceId{5}}, {face(1)}), std::nullopt);
+    ASSERT_EQ(take({FaceId{5}}, {face(1)}, box_at(0.0F)), std::nullopt);
     const auto refused = [&](EditRefusal reason, const SurfaceEdit& edit)
     {
         EXPECT_EQ(sut_->take(edit), reason);
@@ -119,7 +118,8 @@ TEST_F(EditedSurfaceTest, refuses_what_an_edit_cannot_be_and_keeps_everything)
     refused(EditRefusal::wrong_revision, {ModelId{0}, 1, two, {}, box});
     refused(EditRefusal::wrong_revision, {ModelId{0}, 3, two, {}, box});
     refused(EditRefusal::too_large, {ModelId{0}, 2, many, {}, box});
-    refused(EditRefusal::too_large, {ModelId{0}, 2, {}, more, box});
+    refused(EditRefusal::too_large, {ModelId{0}, 2, {}, more, {}});
+    refused(EditRefusal::bad_face, {ModelId{0}, 2, {}, {}, box}); // No source face is in it.
     for (const auto& removed : {twice, gone, absent, beyond, none})
     {
         refused(EditRefusal::unknown_face, {ModelId{0}, 2, removed, {}, box});

@@ -41,7 +41,6 @@ namespace
 
 constexpr std::uint32_t kSettledFrames = 4'000; ///< Most frames until an answer is exact.
 constexpr std::uint32_t kRestingFrames = 20;    ///< Frames outside the model at the start.
-constexpr double kCoreRounding_m = 5e-8; ///< Slack of bounds of a core to faces that are not exact.
 constexpr double kForceLimitRounding_n = 1e-9;
 
 // --- Tools ---------------------------------------------------------------------------------------
@@ -620,6 +619,12 @@ private:
         judge_kind(pair, truth_m);
     }
 
+    /// A rigid tool's answer may leave out faces that change it by a sixteenth of the tolerance.
+    [[nodiscard]] double unmeasured_m() const
+    {
+        return trial_.force_tolerance_n / spec_.stiffness_n_per_m / 16.0;
+    }
+
     void judge_kind(const PairOutput& pair, double truth_m)
     {
         if (pair.kind == AnswerKind::exact && !(pair.upper_m - pair.lower_m <= slack_m(pair)))
@@ -629,7 +634,7 @@ private:
         if (pair.kind == AnswerKind::within_tolerance &&
             !(trial_.force_tolerance_n > 0.0 &&
               pair.lower_m >= truth_m - 2.0 * pair.tolerated_m -
-                                  (is_sphere() ? slack_m(pair) : kCoreRounding_m)))
+                                  (is_sphere() ? slack_m(pair) : unmeasured_m())))
         {
             flag("within a tolerance of " + exactly(pair.tolerated_m) + ", but " +
                  exactly(pair.lower_m) + " for " + exactly(truth_m));

@@ -126,7 +126,7 @@ TEST(LiveState, gathers_the_objects_of_telemetry_in_the_same_way)
     EXPECT_EQ(publish(2, {3, 1}), (std::vector<std::uint32_t>{0, 1, 3}));
     EXPECT_EQ(publish(0, {1}), (std::vector<std::uint32_t>{1, 3}));
     sut.publish({}, {});
-    EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{})) << "it came anew";
+    EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{})) << "it came again";
 }
 
 TEST(StateJson, says_what_it_waits_for)
