@@ -81,9 +81,11 @@ std::string difference_of(const FrameOutput& a, const FrameOutput& b)
 class PressedPlate
 {
 public:
-    PressedPlate()
+    explicit PressedPlate(double force_tolerance_n = 0.0)
     {
-        rig_.emplace(model_, editable_options(kRadius_m));
+        RigOptions options = editable_options(kRadius_m);
+        options.force_tolerance_n = force_tolerance_n;
+        rig_.emplace(model_, options);
         force_.emplace(ToolSpec{kRadius_m, 500.0, 8.0, 1.0}, 1e-3);
         const FaceTree tree(model_.faces);
         top_m = 0.5 * (tree.low_m() + tree.high_m());
@@ -206,6 +208,34 @@ TEST(EditEffects, a_face_that_is_added_over_a_tool_makes_no_force_until_the_tool
     EXPECT_TRUE(sut.output.pairs[0].is_joined);
     ASSERT_NO_FATAL_FAILURE(sut.press());
     EXPECT_NEAR(sut.sent_n.norm(), before_n, 1e-6);
+}
+
+TEST(EditEffects, coarse_faces_round_a_hole_are_split_even_within_the_tolerance)
+{
+    PressedPlate sut(0.1);
+    ASSERT_NO_FATAL_FAILURE(sut.press());
+    const std::uint32_t refined = sut.output.models[0].refined_records;
+    sut.send(sut.author.removal_of(sut.top_faces(0.5 * PressedPlate::kRadius_m)));
+    for (int i = 0; i < 50; ++i)
+    {
+        sut.step(PressedPlate::kPressed_m);
+        const BracketVerdict verdict =
+            judge_bracket(sut.soup.oracle(), sut.output.pairs[0], ObjectPose{});
+        ASSERT_EQ(verdict.text, "") << i;
+    }
+    EXPECT_GT(sut.output.models[0].refined_records, refined);
+    // They stay split under a tool that moves to and fro, and are not merged in vain.
+    const Vec3 top_m = sut.top_m;
+    std::uint32_t merges = 0;
+    for (int i = 0; i < 600; ++i)
+    {
+        sut.top_m = top_m + Vec3(0.0005 * std::sin(0.05 * i), 0.0, 0.0);
+        sut.step(PressedPlate::kPressed_m);
+        merges += i < 300 ? 0 : sut.output.work.merges;
+    }
+    EXPECT_EQ(merges, 0U);
+    EXPECT_TRUE(sut.output.pairs[0].kind == AnswerKind::exact ||
+                sut.output.pairs[0].kind == AnswerKind::within_tolerance);
 }
 
 TEST(EditEffects, equal_faces_in_place_of_the_touched_ones_are_felt_as_nothing)
