@@ -85,8 +85,8 @@ inline constexpr std::uint32_t kBroadWalks = 4;
 /// Largest number of scene changes that a frame takes; 208 B each. Further ones of the same frame
 /// are refused (ChangeRefusal::too_many).
 inline constexpr std::uint32_t kMaxSceneChanges = 64;
-/// Largest number of faces that one edit removes, and that it adds; 48 B of both in a queue. A frame
-/// makes an edit whole, beside its budget of work. A larger edit is refused
+/// Largest number of faces that one edit removes, and that it adds; 48 B of both in a queue. A
+/// frame makes an edit whole, beside its budget of work. A larger edit is refused
 /// (EditRefusal::too_large).
 inline constexpr std::uint32_t kMaxEditFaces = 1'024;
 /// Largest number of edits that a frame takes. Further ones of the same frame are refused
