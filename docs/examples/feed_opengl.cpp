@@ -19,7 +19,7 @@ int main(int argc, char** argv)
     const int feed_socket = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
     sockaddr_in here{};
     here.sin_family = AF_INET;
-    here.sin_port = htons(argc > 1 ? atoi(argv[1]) : 7301);
+    here.sin_port = htons(static_cast<uint16_t>(argc > 1 ? atoi(argv[1]) : 7301));
     here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (bind(feed_socket, reinterpret_cast<sockaddr*>(&here), sizeof(here)) != 0)
         return std::perror("bind"), 2;
