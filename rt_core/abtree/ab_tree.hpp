@@ -75,9 +75,10 @@ public:
     void insert(const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
     /// Moves one corner (0 .. 2) of a face and changes its error, for fan faces of splits and
-    /// merges: cheaper than removal and insertion. No effect on an unplaced face.
-    void move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m, ErrorCode error,
-                     bool is_outdated = false) noexcept TACTUS_NONBLOCKING;
+    /// merges: cheaper than removal and insertion. The face is not outdated afterwards. No effect
+    /// on an unplaced face.
+    void move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
+                     ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
     /// Marks these lanes of a block in use as outdated (ChangedFace::is_outdated).
     void outdate(std::uint32_t block, std::uint32_t lanes) noexcept TACTUS_NONBLOCKING;

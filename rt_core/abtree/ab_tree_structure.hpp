@@ -68,7 +68,7 @@ void BasicAbTree<Volume>::insert(const ChangedFace& face) noexcept
 
 template <typename Volume>
 void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const Vec3f& position_m,
-                                      ErrorCode error, bool is_outdated) noexcept
+                                      ErrorCode error) noexcept
 {
     TACTUS_ASSERT(corner < 3);
     const std::uint32_t leaf = leaf_of(prim);
@@ -78,8 +78,7 @@ void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const V
     }
     const std::uint32_t block = leaf / kBlockFaces;
     const std::uint32_t lane = leaf % kBlockFaces;
-    if (move_corner_in_block(blocks_[block], sides_[block], lane, corner, position_m, error,
-                             is_outdated))
+    if (move_corner_in_block(blocks_[block], sides_[block], lane, corner, position_m, error))
     {
         mark(TreeRef::to_block(block));
         return;
@@ -87,7 +86,7 @@ void BasicAbTree<Volume>::move_corner(PrimId prim, std::uint32_t corner, const V
     ChangedFace face = describe(block, lane);
     face.corners_m[corner] = position_m;
     face.error = error;
-    face.is_outdated = is_outdated;
+    face.is_outdated = false;
     update(face);
 }
 

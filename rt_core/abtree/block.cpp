@@ -87,14 +87,24 @@ void drop_unless_used(BlockGeometry& block, std::uint8_t row) noexcept
     }
 }
 
-void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error, bool is_outdated) noexcept
+/// Sets the error of a face that is not outdated.
+void set_error(BlockSide& side, std::uint32_t lane, ErrorCode error) noexcept
 {
     const std::uint32_t bit = 1U << lane;
     side.errors[lane] = error;
-    side.coarse = static_cast<std::uint16_t>(error == 0 && !is_outdated ? side.coarse & ~bit
-                                                                        : side.coarse | bit);
-    side.outdated =
-        static_cast<std::uint16_t>(is_outdated ? side.outdated | bit : side.outdated & ~bit);
+    side.coarse = static_cast<std::uint16_t>(error == 0 ? side.coarse & ~bit : side.coarse | bit);
+    side.outdated = static_cast<std::uint16_t>(side.outdated & ~bit);
+}
+
+/// Bits of `lanes` of a mask, moved to the first lanes.
+std::uint16_t gather(std::uint16_t mask, std::uint32_t lanes) noexcept
+{
+    std::uint32_t gathered = 0;
+    for (std::uint32_t to = 0; lanes != 0; lanes &= lanes - 1, ++to)
+    {
+        gathered |= ((std::uint32_t{mask} >> std::countr_zero(lanes)) & 1U) << to;
+    }
+    return static_cast<std::uint16_t>(gathered);
 }
 
 /// Keeps only the faces in `lanes` and moves them to the first lanes: a kernel skips an empty
@@ -103,8 +113,8 @@ void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noex
 {
     std::size_t to = 0;
     std::uint32_t used = 0;
-    std::uint32_t coarse = 0;
-    std::uint32_t outdated = 0;
+    side.coarse = gather(side.coarse, lanes);
+    side.outdated = side.outdated == 0 ? std::uint16_t{0} : gather(side.outdated, lanes);
     for (std::uint32_t left = lanes; left != 0; left &= left - 1, ++to)
     {
         const auto from = static_cast<std::size_t>(std::countr_zero(left));
@@ -113,16 +123,12 @@ void keep_lanes(BlockGeometry& block, BlockSide& side, std::uint32_t lanes) noex
             corners[to] = corners[from];
             used |= 1U << corners[to];
         }
-        coarse |= ((std::uint32_t{side.coarse} >> from) & 1U) << to;
-        outdated |= ((std::uint32_t{side.outdated} >> from) & 1U) << to;
         side.errors[to] = side.errors[from];
         side.prims[to] = side.prims[from];
     }
     std::fill(side.prims.begin() + static_cast<std::ptrdiff_t>(to), side.prims.end(), PrimId{});
     block.faces = static_cast<std::uint16_t>((1U << to) - 1U);
     block.vertices = static_cast<std::uint16_t>(used);
-    side.coarse = static_cast<std::uint16_t>(coarse);
-    side.outdated = static_cast<std::uint16_t>(outdated);
 }
 
 } // namespace
@@ -153,13 +159,17 @@ std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side, const ChangedF
     }
     block.faces = static_cast<std::uint16_t>(block.faces | (1U << lane));
     side.prims[lane] = face.prim;
-    set_error(side, lane, face.error, face.is_outdated);
+    set_error(side, lane, face.error);
+    if (face.is_outdated)
+    {
+        side.coarse = static_cast<std::uint16_t>(side.coarse | (1U << lane));
+        side.outdated = static_cast<std::uint16_t>(side.outdated | (1U << lane));
+    }
     return lane;
 }
 
 bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
-                          std::uint32_t corner, const Vec3f& position_m, ErrorCode error,
-                          bool is_outdated) noexcept
+                          std::uint32_t corner, const Vec3f& position_m, ErrorCode error) noexcept
 {
     TACTUS_ASSERT(((std::uint32_t{block.faces} >> lane) & 1U) != 0);
     const std::uint32_t row = find_or_add_vertex(block, position_m);
@@ -170,7 +180,7 @@ bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t l
     const std::uint8_t left =
         std::exchange(block.corners[corner][lane], static_cast<std::uint8_t>(row));
     drop_unless_used(block, left);
-    set_error(side, lane, error, is_outdated);
+    set_error(side, lane, error);
     return true;
 }
 

@@ -62,12 +62,11 @@ static_assert(sizeof(BlockSide) == 96);
 [[nodiscard]] std::uint32_t add_to_block(BlockGeometry& block, BlockSide& side,
                                          const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
 
-/// Moves one corner of a face to another position and changes the face's error. False, with the
-/// face unchanged, if the block has no row for the position.
+/// Moves one corner of a face to another position and changes the face's error. The face is not
+/// outdated afterwards. False, with the face unchanged, if the block has no row for the position.
 [[nodiscard]] bool move_corner_in_block(BlockGeometry& block, BlockSide& side, std::uint32_t lane,
                                         std::uint32_t corner, const Vec3f& position_m,
-                                        ErrorCode error,
-                                        bool is_outdated) noexcept TACTUS_NONBLOCKING;
+                                        ErrorCode error) noexcept TACTUS_NONBLOCKING;
 
 /// Removes an active face, with the rows that only it used.
 void remove_from_block(BlockGeometry& block, BlockSide& side,

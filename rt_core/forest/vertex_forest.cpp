@@ -262,12 +262,8 @@ std::uint32_t VertexForest::next_of(PrimId prim) const noexcept
 ErrorCode VertexForest::error_of(PrimId prim) const noexcept
 {
     const std::uint32_t leaf = tree_->leaf_of(prim);
-    if (leaf != AbTree::kNoLeaf)
-    {
-        return tree_->side(leaf / kBlockFaces).errors[leaf % kBlockFaces];
-    }
-    const ActiveFace& active = faces_[prim.value];
-    return is_added(active.id) ? ErrorCode{0} : error_in(active.id, active.state);
+    return leaf != AbTree::kNoLeaf ? tree_->side(leaf / kBlockFaces).errors[leaf % kBlockFaces]
+                                   : error_in(faces_[prim.value].id, faces_[prim.value].state);
 }
 
 ErrorCode VertexForest::error_before(const VsplitRecord& record) const noexcept
@@ -283,8 +279,11 @@ ErrorCode VertexForest::error_before(const VsplitRecord& record) const noexcept
 /// Error code stored with the face's state, whether the face is of the base mesh or of a record.
 ErrorCode VertexForest::error_in(FaceId face, FaceState state) const noexcept
 {
-    return state.is_base() ? slots_.base.faces[face.value].error
-                           : pages_->resident(state.record()).error[state.place()];
+    if (state.is_base())
+    {
+        return is_added(face) ? ErrorCode{0} : slots_.base.faces[face.value].error;
+    }
+    return pages_->resident(state.record()).error[state.place()];
 }
 
 Vec3f VertexForest::position_of(VertexId vertex) const noexcept
@@ -299,18 +298,23 @@ std::array<Vec3f, 3> VertexForest::corners_of(PrimId prim) const noexcept
 }
 
 /// Position of a corner: from the tree for a placed face, otherwise from the records.
-Vec3f VertexForest::corner_position(PrimId prim, std::uint32_t place) const noexcept
+inline Vec3f VertexForest::corner_position(PrimId prim, std::uint32_t place) const noexcept
 {
     const std::uint32_t leaf = tree_->leaf_of(prim);
     if (leaf == AbTree::kNoLeaf)
     {
-        const ActiveFace& active = faces_[prim.value];
-        return is_added(active.id) ? edits_->added(active.id).corners_m[place]
-                                   : position_of(active.corners[place]);
+        return unplaced_corner_position(prim, place);
     }
     const BlockGeometry& block = tree_->block(leaf / kBlockFaces);
     const std::size_t row = block.corners[place][leaf % kBlockFaces];
     return {block.coordinates[0][row], block.coordinates[1][row], block.coordinates[2][row]};
+}
+
+Vec3f VertexForest::unplaced_corner_position(PrimId prim, std::uint32_t place) const noexcept
+{
+    const ActiveFace& active = faces_[prim.value];
+    return is_added(active.id) ? edits_->added(active.id).corners_m[place]
+                               : position_of(active.corners[place]);
 }
 
 ChangedFace VertexForest::describe(PrimId prim) const noexcept
@@ -414,26 +418,37 @@ PrimId VertexForest::add_face(const ActiveFace& face, ErrorCode error, std::uint
 void VertexForest::remove_face(PrimId prim) noexcept
 {
     hash_ -= hash_of(faces_[prim.value], error_of(prim));
-    if (!tree_->face_of(prim).is_none())
+    const bool is_hidden = has_removed() && tree_->face_of(prim).is_none();
+    if (!is_hidden)
     {
         tree_->remove(prim);
     }
     pool_->give_back(share_, owner_, prim);
 }
 
-void VertexForest::move_corner(FanFace fan, VertexId to, const Vec3f& position_m, FaceState state,
-                               ErrorCode error) noexcept
+inline void VertexForest::move_corner(FanFace fan, VertexId to, const Vec3f& position_m,
+                                      FaceState state, ErrorCode error) noexcept
 {
     ActiveFace& face = faces_[fan.prim.value];
     hash_ -= hash_of(face, error_of(fan.prim));
     face.corners[fan.place] = to;
     face.state = state;
     hash_ += hash_of(face, error);
-    if (!has_removed())
+    if (has_removed())
+    {
+        move_corner_after_edits(fan, position_m, error);
+    }
+    else
     {
         tree_->move_corner(fan.prim, fan.place, position_m, error);
-        return;
     }
+}
+
+/// The same for the tree, in which the face may be hidden or outdated, before or afterwards.
+void VertexForest::move_corner_after_edits(FanFace fan, const Vec3f& position_m,
+                                           ErrorCode error) noexcept
+{
+    const ActiveFace& face = faces_[fan.prim.value];
     const bool was_hidden = tree_->face_of(fan.prim).is_none();
     std::array<Vec3f, 3> corners_m = corners_of(fan.prim);
     corners_m[fan.place] = position_m;
@@ -451,7 +466,12 @@ void VertexForest::move_corner(FanFace fan, VertexId to, const Vec3f& position_m
     }
     else
     {
-        tree_->move_corner(fan.prim, fan.place, position_m, error, standing == Standing::outdated);
+        tree_->move_corner(fan.prim, fan.place, position_m, error);
+        if (const std::uint32_t leaf = tree_->leaf_of(fan.prim);
+            standing == Standing::outdated && leaf != AbTree::kNoLeaf)
+        {
+            tree_->outdate(leaf / kBlockFaces, 1U << (leaf % kBlockFaces));
+        }
     }
 }
 
@@ -548,12 +568,11 @@ bool VertexForest::may_be_removed_near(const Vec3f& point_m, double reach_m) con
            edits_->may_be_removed_near({point_m, point_m}, round_up_to_float(reach_m));
 }
 
-/// Standing of an active source face; of an added one it is `shown`.
 VertexForest::Standing
-VertexForest::standing_of(const ActiveFace& face, ErrorCode error,
-                          const std::array<Vec3f, 3>& corners_m) const noexcept
+VertexForest::standing_after_edits(const ActiveFace& face, ErrorCode error,
+                                   const std::array<Vec3f, 3>& corners_m) const noexcept
 {
-    if (!has_removed() || is_added(face.id))
+    if (is_added(face.id))
     {
         return Standing::shown;
     }

@@ -171,9 +171,15 @@ private:
         outdated,
         hidden,
     };
+    /// Standing of an active face; of an added one it is `shown`.
+    [[nodiscard]] Standing standing_of(const ActiveFace& face, ErrorCode error,
+                                       const std::array<Vec3f, 3>& corners_m) const noexcept
+    {
+        return has_removed() ? standing_after_edits(face, error, corners_m) : Standing::shown;
+    }
     [[nodiscard]] Standing
-    standing_of(const ActiveFace& face, ErrorCode error,
-                const std::array<Vec3f, 3>& corners_m) const noexcept TACTUS_NONBLOCKING;
+    standing_after_edits(const ActiveFace& face, ErrorCode error,
+                         const std::array<Vec3f, 3>& corners_m) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_final(const ActiveFace& face) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool is_added(FaceId face) const noexcept
     {
@@ -189,11 +195,14 @@ private:
     void outdate_in_block(std::uint32_t block, const Aabb& removed_m) noexcept;
     [[nodiscard]] Vec3f corner_position(PrimId prim,
                                         std::uint32_t place) const noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] Vec3f
+    unplaced_corner_position(PrimId prim, std::uint32_t place) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] PrimId add_face(const ActiveFace& face, ErrorCode error, std::uint32_t bucket,
                                   const std::array<Vec3f, 3>& corners_m) noexcept;
     void remove_face(PrimId prim) noexcept;
     void move_corner(FanFace fan, VertexId to, const Vec3f& position_m, FaceState state,
                      ErrorCode error) noexcept;
+    void move_corner_after_edits(FanFace fan, const Vec3f& position_m, ErrorCode error) noexcept;
 
     ModelCounts counts_;
     PageSlots slots_;

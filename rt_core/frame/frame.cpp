@@ -55,7 +55,10 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
 {
     begin(input);
     changes_.make(input.changes, parts_, neighbours_, account_.scene);
-    edits_.make(input.edits, parts_, account_);
+    if (!input.edits.empty())
+    {
+        edits_.make(input.edits, parts_, account_);
+    }
     account_.faults |= parts_.tools.begin(input.tools, parts_.pairs, parts_.rules.period_ns);
     const bool is_same_scene = input.changes.empty() && input.edits.empty();
     if (is_same_scene && resting_.try_rest(parts_, account_))

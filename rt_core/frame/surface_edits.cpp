@@ -54,7 +54,7 @@ void SurfaceEdits::make(std::span<const SurfaceEdit> edits, FrameParts& parts,
         static_cast<std::uint32_t>(edits.size() - taken);
 }
 
-void SurfaceEdits::tell_pairs(FrameParts& parts) noexcept
+void SurfaceEdits::tell_pairs_of_edits(FrameParts& parts) noexcept
 {
     for (const SurfaceEdit& edit : made_)
     {

@@ -22,9 +22,17 @@ public:
     void make(std::span<const SurfaceEdit> edits, FrameParts& parts,
               FrameAccount& account) noexcept TACTUS_NONBLOCKING;
     /// Lets the tools go that added faces entered, once the pairs are placed.
-    void tell_pairs(FrameParts& parts) noexcept TACTUS_NONBLOCKING;
+    void tell_pairs(FrameParts& parts) noexcept TACTUS_NONBLOCKING
+    {
+        if (!made_.empty())
+        {
+            tell_pairs_of_edits(parts);
+        }
+    }
 
 private:
+    void tell_pairs_of_edits(FrameParts& parts) noexcept TACTUS_NONBLOCKING;
+
     StaticVector<SurfaceEdit, kMaxEditsPerFrame> made_; ///< Edits of this frame that were made.
 };
 
