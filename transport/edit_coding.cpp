@@ -188,8 +188,8 @@ std::optional<Refusal> read_added(ByteReader& reader, std::uint32_t count,
 
 void encode_edit(const EditContent& edit, const ModelHeader& header, std::vector<std::byte>& coded)
 {
-    TACTUS_ASSERT(edit.removed.size() <= kMaxEditFaces);
-    TACTUS_ASSERT(edit.added.size() <= kMaxEditFaces);
+    TACTUS_ASSERT(edit.removed.size() <= kMaxSumFaces);
+    TACTUS_ASSERT(edit.added.size() <= kMaxSumFaces);
     std::map<GridPoint, std::uint16_t> numbers;
     std::vector<GridPoint> vertices;
     std::vector<std::uint16_t> corners;
@@ -239,7 +239,7 @@ void encode_edit(const EditContent& edit, const ModelHeader& header, std::vector
 }
 
 Result<EditContent, Refusal> decode_edit(std::span<const std::byte> coded,
-                                         const ModelHeader& header)
+                                         const ModelHeader& header, std::size_t most)
 {
     ByteReader reader(coded);
     EditContent edit;
@@ -247,11 +247,11 @@ Result<EditContent, Refusal> decode_edit(std::span<const std::byte> coded,
     const std::uint32_t removed = reader.read<std::uint16_t>();
     const std::uint32_t corners = reader.read<std::uint16_t>();
     const std::uint32_t added = reader.read<std::uint16_t>();
-    if (removed > kMaxEditFaces || added > kMaxEditFaces || corners > 3 * added)
+    if (removed > most || added > most || corners > 3 * added)
     {
         return not_an_edit(fmt::format("it removes {} faces and adds {} with {} vertices; {} faces "
                                        "and three vertices a face are allowed",
-                                       removed, added, corners, kMaxEditFaces));
+                                       removed, added, corners, most));
     }
     std::vector<Vec3f> vertices;
     auto fault = read_removed(reader, removed, header, edit);

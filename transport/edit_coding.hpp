@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/result.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/spm/header.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/edit_content.hpp"
@@ -15,9 +16,9 @@
 namespace tactus
 {
 
-/// Size of the largest coded edit, in bytes: all faces, without shared vertices.
+/// Size of the largest coded edit, in bytes: all faces of a sum's part, without shared vertices.
 inline constexpr std::size_t kMaxCodedEditBytes =
-    10 + kMaxEditFaces * 4 + 24 + kMaxEditFaces * 3 * 9 + kMaxEditFaces * 14;
+    10 + kMaxSumFaces * 4 + 24 + kMaxSumFaces * 3 * 9 + kMaxSumFaces * 14;
 
 /// Codes an edit of the model into `coded`. The edit must be one that decode_edit() accepts
 /// (asserted for its vertices). Each vertex is coded once, as three whole numbers of quanta.
@@ -28,9 +29,10 @@ inline constexpr std::size_t kMaxCodedEditBytes =
 void encode_edit(const EditContent& edit, const ModelHeader& header, std::vector<std::byte>& coded);
 
 /// Decodes an untrusted edit. Refused in one line: bytes that are missing or left over, more than
-/// kMaxEditFaces faces, ids and slots that the model can't have or that occur twice, a bucket of
+/// `most` faces of a kind, ids and slots that the model can't have or that occur twice, a bucket of
 /// more than 31 bits, a box that is empty or not finite, and vertices outside the model's box.
 [[nodiscard]] Result<EditContent, Refusal> decode_edit(std::span<const std::byte> coded,
-                                                       const ModelHeader& header);
+                                                       const ModelHeader& header,
+                                                       std::size_t most = kMaxEditFaces);
 
 } // namespace tactus

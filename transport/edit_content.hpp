@@ -11,6 +11,10 @@
 namespace tactus
 {
 
+/// Largest number of faces that one part of a sum of edits removes, and that it adds. Frames take
+/// the sum in edits of kMaxEditFaces.
+inline constexpr std::uint32_t kMaxSumFaces = 1'024;
+
 /// A SurfaceEdit that owns its faces, for a model that its holder knows.
 struct EditContent
 {

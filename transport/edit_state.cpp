@@ -38,18 +38,17 @@ double size_of(const Aabb& box)
 class StepPacker
 {
 public:
-    explicit StepPacker(std::uint32_t revision) : revision_(revision) {}
+    StepPacker(std::uint32_t revision, std::size_t most) : revision_(revision), most_(most) {}
 
     void add(const AddedFace& face)
     {
-        step(steps_.empty() || steps_.back().added.size() == kMaxEditFaces).added.push_back(face);
+        step(steps_.empty() || steps_.back().added.size() == most_).added.push_back(face);
     }
     void remove(FaceId face) { step(is_full_of_removed()).removed.push_back(face); }
     /// Lets one face take the slot of another.
     void replace(FaceId face, const AddedFace& by)
     {
-        EditContent& edit =
-            step(is_full_of_removed() || steps_.back().added.size() == kMaxEditFaces);
+        EditContent& edit = step(is_full_of_removed() || steps_.back().added.size() == most_);
         edit.removed.push_back(face);
         edit.added.push_back(by);
     }
@@ -68,7 +67,7 @@ private:
 
     [[nodiscard]] bool is_full_of_removed() const
     {
-        return steps_.empty() || steps_.back().removed.size() == kMaxEditFaces;
+        return steps_.empty() || steps_.back().removed.size() == most_;
     }
     EditContent& step(bool is_new)
     {
@@ -81,6 +80,7 @@ private:
     }
 
     std::uint32_t revision_;
+    std::size_t most_;
     std::vector<EditContent> steps_;
     std::uint32_t box_{kNone}; ///< Box of the last step; kNone: it removes no source face.
 };
@@ -93,7 +93,7 @@ EditState::EditState(const ModelCounts& counts, std::uint32_t room)
     TACTUS_ASSERT(room <= kMaxAddedFaces);
 }
 
-std::optional<Refusal> EditState::fault_of(const EditContent& edit) const
+std::optional<Refusal> EditState::fault_of(const EditContent& edit, std::size_t most) const
 {
     const auto refuse = [&](const std::string& text)
     { return Refusal{fmt::format("edit {} is refused: {}", edit.revision, text)}; };
@@ -101,10 +101,10 @@ std::optional<Refusal> EditState::fault_of(const EditContent& edit) const
     {
         return refuse(fmt::format("the next edit has the number {}", revision_ + 1));
     }
-    if (edit.removed.size() > kMaxEditFaces || edit.added.size() > kMaxEditFaces)
+    if (edit.removed.size() > most || edit.added.size() > most)
     {
         return refuse(fmt::format("it removes {} faces and adds {}; at most {} each are allowed",
-                                  edit.removed.size(), edit.added.size(), kMaxEditFaces));
+                                  edit.removed.size(), edit.added.size(), most));
     }
     if (auto fault = fault_of_removed(edit))
     {
@@ -155,7 +155,7 @@ std::optional<Refusal> EditState::fault_of_removed(const EditContent& edit) cons
 
 void EditState::apply(const EditContent& edit)
 {
-    TACTUS_ASSERT(!fault_of(edit));
+    TACTUS_ASSERT(!fault_of(edit, kMaxSumFaces));
     revision_ = edit.revision;
     const bool removes_source =
         std::ranges::any_of(edit.removed, [&](FaceId face) { return face.value < face_ids_; });
@@ -257,10 +257,10 @@ bool EditState::leads_to(const EditState& target) const
                                { return target.removed_.contains(face.first); });
 }
 
-std::vector<EditContent> EditState::steps_to(const EditState& target) const
+std::vector<EditContent> EditState::steps_to(const EditState& target, std::size_t most) const
 {
     TACTUS_ASSERT(leads_to(target));
-    StepPacker packer(revision_);
+    StepPacker packer(revision_, most);
     const auto id_of = [&](std::uint32_t slot) { return FaceId{face_ids_ + slot}; };
     for (const auto& [slot, face] : target.added_)
     {

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/limits.hpp"
 #include "rt_core/spm/ids.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/edit_content.hpp"
@@ -28,8 +29,10 @@ public:
 
     /// Reason why the edit can't follow; none if it can. The rules are those of a frame, except
     /// that corners are not checked (decode_edit() does).
-    [[nodiscard]] std::optional<Refusal> fault_of(const EditContent& edit) const;
-    /// Applies an edit without a fault (asserted).
+    /// At most `most` faces may come, and as many go.
+    [[nodiscard]] std::optional<Refusal> fault_of(const EditContent& edit,
+                                                  std::size_t most = kMaxEditFaces) const;
+    /// Applies an edit without a fault (asserted), with at most kMaxSumFaces faces of a kind.
     void apply(const EditContent& edit);
 
     [[nodiscard]] std::uint32_t revision() const noexcept { return revision_; }
@@ -52,10 +55,11 @@ public:
     /// `target` needs no more slots than there are here.
     [[nodiscard]] bool leads_to(const EditState& target) const;
     /// Edits that lead from here to `target`, which must be possible (asserted). Their revisions
-    /// follow revision(). Each has at most kMaxEditFaces faces that come and go, and removes source
-    /// faces of one box. Faces come before others go, so that no surface is missing in between.
+    /// follow revision(). Each has at most `most` faces that come and go, and removes source faces
+    /// of one box. Faces come before others go, so that no surface is missing in between.
     /// Only a face that takes the slot of another one comes in the edit in which that one goes.
-    [[nodiscard]] std::vector<EditContent> steps_to(const EditState& target) const;
+    [[nodiscard]] std::vector<EditContent> steps_to(const EditState& target,
+                                                    std::size_t most = kMaxEditFaces) const;
 
 private:
     [[nodiscard]] std::optional<Refusal> fault_of_removed(const EditContent& edit) const;

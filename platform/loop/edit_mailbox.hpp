@@ -17,8 +17,8 @@
 namespace tactus
 {
 
-/// Passes edits from the transport thread to the haptic thread, in order. It holds a few edits in
-/// fixed memory, 200 KiB. Neither thread waits for the other: the transport thread offers an edit
+/// Passes edits from the transport thread to the haptic thread, in order. It holds its edits in
+/// fixed memory, 160 KiB. Neither thread waits for the other: the transport thread offers an edit
 /// again if the mailbox is full.
 ///
 /// Each side writes only its own count, as in SpscQueue. The edits stay in place while a frame
@@ -26,8 +26,8 @@ namespace tactus
 class EditMailbox
 {
 public:
-    /// Number of edits in the mailbox at most: those of two frames.
-    static constexpr std::size_t kEdits = 2 * std::size_t{kMaxEditsPerFrame};
+    /// Number of edits in the mailbox at most: those of 64 frames, between two polls of a network.
+    static constexpr std::size_t kEdits = 64 * std::size_t{kMaxEditsPerFrame};
 
     EditMailbox() : cells_(kEdits) {}
 

@@ -465,10 +465,9 @@ std::optional<EditRefusal> Model::edit(const SurfaceEdit& change, WorkCounters& 
     if (!refusal)
     {
         forest.apply(change);
-        // An edit is made whole. Its work is not the frame's choice, so no stage gets less for it.
-        const WorkBudget budget = work.budget;
+        work.budget.spend(static_cast<std::uint32_t>(change.removed.size() + change.added.size()) *
+                          WorkCost::edited_face);
         refit(work, faults);
-        work.budget = budget;
     }
     return refusal;
 }

@@ -35,6 +35,7 @@ struct WorkCost
     static constexpr std::uint32_t question = 300;
     static constexpr std::uint32_t merge = 3'200;     ///< Merge without its refit.
     static constexpr std::uint32_t scan = 250;        ///< Record checked for merging.
+    static constexpr std::uint32_t edited_face = 700; ///< Face of an edit without its refit.
     static constexpr std::uint32_t refit = 300;       ///< Refit of a block or node.
     static constexpr std::uint32_t index_group = 200; ///< Eight boxes of an index page.
     /// One sphere against eight boxes of an index page.

@@ -6,6 +6,7 @@
 
 #include "host_tools/edit/surface_editor.hpp"
 #include "platform/machine/pool_memory.hpp"
+#include "tests/bench/edit_arrival.hpp"
 #include "tests/bench/frame_replay.hpp"
 #include "tests/bench/peers/point_query.hpp"
 #include "tests/bench/static_model.hpp"
@@ -218,6 +219,7 @@ void run_edits_case(const CaseContext& context, const EditsCase& test_case)
     {
         rows.add("allocations", static_cast<double>(*edited.allocations()), "", 0.0);
     }
+    add_arrival_rows(rows, scene, kPeriod_s);
     add_rivals(scene, rows);
 }
 

@@ -24,8 +24,8 @@ namespace tactus::bench
 namespace
 {
 
-constexpr double kSpeed_diag_per_s = 0.5;
-constexpr std::uint32_t kSplits = 64;
+constexpr double kErrorTimeSpeed_diag_per_s = 0.5;
+constexpr std::uint32_t kErrorTimeSplits = 64;
 constexpr std::uint32_t kLatency_ms = 4;
 /// Part of the rows that cannot be compared with the peers'.
 constexpr const char* kOthers = "Other motions and models";
@@ -43,13 +43,13 @@ struct Setting
     std::string name;
     bool is_quick;
     std::function<void(FrameRun&)> change{[](FrameRun&) {}};
-    double speed_diag_per_s{kSpeed_diag_per_s};
+    double speed_diag_per_s{kErrorTimeSpeed_diag_per_s};
     double radius_diag{kRadius_diag};
 
     /// True if the peers have the same motion.
     [[nodiscard]] bool is_of_the_motion() const
     {
-        return speed_diag_per_s == kSpeed_diag_per_s && radius_diag == kRadius_diag;
+        return speed_diag_per_s == kErrorTimeSpeed_diag_per_s && radius_diag == kRadius_diag;
     }
 };
 
@@ -89,8 +89,8 @@ Setting with_fixed_radius(double factor, bool is_quick)
 
 Setting with_probe(double radius_diag)
 {
-    return {fmt::format("probe {:g} diag", radius_diag), false, [](FrameRun&) {}, kSpeed_diag_per_s,
-            radius_diag};
+    return {fmt::format("probe {:g} diag", radius_diag), false, [](FrameRun&) {},
+            kErrorTimeSpeed_diag_per_s, radius_diag};
 }
 
 Setting with_speed(double speed_diag_per_s)
@@ -311,7 +311,8 @@ private:
         const test::FaceTree tree(source);
         const double diagonal_m = scene.model.diagonal_m;
         const TrueAnswers truth(
-            tree, diagonal_m, counted(slide_motion({tree, diagonal_m}, kSpeed_diag_per_s, frames_)),
+            tree, diagonal_m,
+            counted(slide_motion({tree, diagonal_m}, kErrorTimeSpeed_diag_per_s, frames_)),
             kRadius_diag * diagonal_m);
         Setting setting{fmt::format("{} position bits, against the source", bits), true};
         measure(scene, setting, truth, kOthers);
@@ -321,7 +322,7 @@ private:
     ErrorTimeFigures measure(const Scene& scene, const Setting& setting, const TrueAnswers& truth,
                              const char* part)
     {
-        FrameRun run = make_slide(scene, setting.speed_diag_per_s, kSplits,
+        FrameRun run = make_slide(scene, setting.speed_diag_per_s, kErrorTimeSplits,
                                   static_cast<std::size_t>(test_case_.pool_mib * 0x1p20), frames_);
         std::ranges::copy(truth.questions().points_m, run.goals_m.begin() + kApproachFrames);
         ToolSpec& tool = run.rig.tools[0];
@@ -348,7 +349,7 @@ private:
     /// Adds uncounted frames at the first position, twice as many as refinement needs.
     void stay_until_all_is_there(FrameRun& run) const
     {
-        const std::size_t frames = 2 * scene_.model.faces.size() / kSplits + 1'000;
+        const std::size_t frames = 2 * scene_.model.faces.size() / kErrorTimeSplits + 1'000;
         run.goals_m.insert(run.goals_m.begin(), frames, run.goals_m.front());
         run.lead_in += frames;
         run.rig.chunk_loader_steps_per_frame = 4;
@@ -357,7 +358,7 @@ private:
 
     void run_peers(const std::vector<test::Face>& faces)
     {
-        const TrueAnswers& truth = slides_.of(kSpeed_diag_per_s, kRadius_diag);
+        const TrueAnswers& truth = slides_.of(kErrorTimeSpeed_diag_per_s, kRadius_diag);
         for (const PointPeer& peer : point_peers())
         {
             if (faces.size() > peer.most_faces)

@@ -261,7 +261,7 @@ OwnedEdit EditAuthor::next(const Vec3& near_m)
             sources = patch(place_m, 1);
             break;
         case 1:
-            sources = patch(place_m, 2 + random_.below(all / 20));
+            sources = patch(place_m, 2 + random_.below(std::min(all / 20, kMaxEditFaces - 2)));
             break;
         case 2:
             sources = scatter(1 + random_.below(40U));

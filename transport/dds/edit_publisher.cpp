@@ -53,9 +53,9 @@ EditRequest request_from(const tactus_v5_EditRequests& wire)
 std::uint32_t most_sum_parts(const ModelCounts& counts, std::uint32_t room) noexcept
 {
     // A step is full, or it is the last one of the added faces or of a box.
-    const std::uint64_t parts = std::uint64_t{room} / kMaxEditFaces +
-                                std::uint64_t{counts.face_ids()} / kMaxEditFaces +
-                                kMaxRemovedBoxes + 2;
+    const std::uint64_t parts = std::uint64_t{room} / kMaxSumFaces +
+                                std::uint64_t{counts.face_ids()} / kMaxSumFaces + kMaxRemovedBoxes +
+                                2;
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(parts, kMaxSumParts));
 }
 
@@ -106,7 +106,7 @@ std::optional<Refusal> EditPublisher::publish(std::uint32_t model,
         }
         const std::size_t faces =
             edited.state.removed_count() + edit.removed.size() + edited.state.room();
-        if (faces / kMaxEditFaces + kMaxRemovedBoxes + 2 > kMaxSumParts)
+        if (faces / kMaxSumFaces + kMaxRemovedBoxes + 2 > kMaxSumParts)
         {
             return Refusal{fmt::format("edit {} is refused: more than {} faces were removed since "
                                        "the start; save the model and serve it again",
@@ -189,7 +189,7 @@ void EditPublisher::write_sum(std::uint32_t model)
     Edited& edited = models_[model];
     const ModelHeader& header = edited.model.header;
     const EditState start(header.counts(), edited.model.room);
-    std::vector<EditContent> steps = start.steps_to(edited.state);
+    std::vector<EditContent> steps = start.steps_to(edited.state, kMaxSumFaces);
     if (steps.empty())
     {
         steps.emplace_back().revision = 1; // A sum has at least one part.

@@ -184,7 +184,7 @@ std::optional<std::string> EditReader::take(Feed& feed, const tactus_v5_Edits& s
     }
     auto edit =
         decode_edit(std::as_bytes(std::span(sample.payload._buffer, sample.payload._length)),
-                    feed.model.header);
+                    feed.model.header, is_sum ? kMaxSumFaces : kMaxEditFaces);
     if (!edit)
     {
         return edit.error().text;
@@ -266,7 +266,7 @@ void EditReader::take_sum(Feed& feed)
     EditState target(feed.model.header.counts(), kMaxAddedFaces);
     for (const auto& [part, edit] : sum.received)
     {
-        if (const auto fault = target.fault_of(edit))
+        if (const auto fault = target.fault_of(edit, kMaxSumFaces))
         {
             refuse(feed, fmt::format("part {} of a sum: {}", part, fault->text));
             return;

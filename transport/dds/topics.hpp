@@ -31,7 +31,7 @@ inline constexpr std::size_t kPayloadBytes = 60'000;
 inline constexpr std::size_t kMaxHeaderBytes = std::size_t{8} << 20U;
 inline constexpr std::size_t kMaxBaseBytes = std::size_t{1} << 20U;
 /// Number of single edits of a model that its server keeps for readers that are late.
-inline constexpr std::uint32_t kKeptEdits = 256;
+inline constexpr std::uint32_t kKeptEdits = 1'024;
 /// Maximum number of parts of the sum of a model's edits: four million removed faces.
 inline constexpr std::uint32_t kMaxSumParts = 4'096;
 

@@ -63,15 +63,14 @@ TEST(EditMailbox, refuses_an_edit_too_many_and_has_room_once_a_frame_is_done)
     ASSERT_EQ(edits.size(), kMaxEditsPerFrame);
     EXPECT_FALSE(try_put(sut, next)); // The frame still reads them.
     expect_is(edits[0], 1);
-    expect_is(edits[1], 2);
     sut.done();
-    EXPECT_EQ(sut.taken(), 2U);
+    EXPECT_EQ(sut.taken(), kMaxEditsPerFrame);
     for (std::uint32_t i = 0; i < kMaxEditsPerFrame; ++i)
     {
         EXPECT_TRUE(try_put(sut, next++));
     }
     EXPECT_FALSE(try_put(sut, next));
-    expect_is(sut.edits()[0], 3);
+    expect_is(sut.edits()[0], 1 + kMaxEditsPerFrame);
 }
 
 TEST(EditMailbox, edits_that_are_not_done_are_shown_again)
@@ -79,8 +78,6 @@ TEST(EditMailbox, edits_that_are_not_done_are_shown_again)
     EditMailbox sut;
     ASSERT_TRUE(try_put(sut, 5));
     expect_is(sut.edits()[0], 5);
-    ASSERT_TRUE(try_put(sut, 6));
-    ASSERT_EQ(sut.edits().size(), 2U);
     expect_is(sut.edits()[0], 5);
     sut.done();
     EXPECT_TRUE(sut.edits().empty());

@@ -22,7 +22,7 @@ public:
     [[nodiscard]] EditContent next(Random& random)
     {
         const std::uint32_t face_ids = header_.counts().face_ids();
-        const std::uint32_t most = random.one_in(10) ? kMaxEditFaces : 60;
+        const std::uint32_t most = random.one_in(10) ? kMaxEditFaces : 12;
         EditContent edit;
         edit.revision = ++revision_;
         for (std::uint32_t i = random.below(most + 1); i > 0; --i)
