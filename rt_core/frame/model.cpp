@@ -159,6 +159,37 @@ ModelCapacities streamed_model_room(std::uint32_t meshes, std::uint32_t cells, s
     return room;
 }
 
+namespace
+{
+
+void keep_edit_faces(ModelCapacities& capacities) noexcept
+{
+    const std::uint32_t edit_faces = capacities.edit_faces;
+    capacities = {};
+    capacities.edit_faces = edit_faces;
+}
+
+/// Bytes of the rooms for edits: what models of base meshes need with them and not without.
+std::size_t edit_bytes(std::span<const ModelHeader> headers,
+                       std::span<ModelCapacities> capacities) noexcept
+{
+    const auto needed = [&](bool with_edits)
+    {
+        std::size_t bytes = 0;
+        for (std::size_t i = 0; i < headers.size(); ++i)
+        {
+            ModelCapacities one;
+            one.edit_faces = with_edits ? capacities[i].edit_faces : 0;
+            one = with_faces(one, headers[i].counts().base_faces + kMinFaces);
+            bytes += required_bytes(headers.subspan(i, 1), {&one, 1});
+        }
+        return bytes;
+    };
+    return needed(true) - needed(false);
+}
+
+} // namespace
+
 bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size_t cache_bytes,
               std::span<ModelCapacities> capacities) noexcept
 {
@@ -166,24 +197,26 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
     TACTUS_ASSERT(!headers.empty());
     TACTUS_ASSERT(headers.size() <= kMaxModels);
     const auto count = static_cast<std::uint32_t>(headers.size());
-    for (ModelCapacities& one : capacities)
+    // Rooms for edits come first; the rest is shared by pages and faces as without them.
+    std::ranges::for_each(capacities, &keep_edit_faces);
+    const std::size_t for_edits = edit_bytes(headers, capacities);
+    if (for_edits >= bytes)
     {
-        const std::uint32_t edit_faces = one.edit_faces;
-        one = ModelCapacities{};
-        one.edit_faces = edit_faces;
+        return false;
     }
+    const std::size_t shared = bytes - for_edits;
     const auto chunks_of = [&](std::size_t i)
     { return std::max(headers[i].counts().chunks(), 1U); };
     const auto index_pages_of = [&](std::size_t i)
     { return std::max(headers[i].counts().index_pages(), 1U); };
     const auto index_pages_max = static_cast<std::uint32_t>(std::max<std::size_t>(
-        kLeastResidentIndexPages, bytes / kIndexPageShare / sizeof(IndexPage)));
+        kLeastResidentIndexPages, shared / kIndexPageShare / sizeof(IndexPage)));
     static_cast<void>(
         divide(index_pages_max, capacities, &ModelCapacities::index_pages, index_pages_of));
     const std::size_t page_bytes =
         sizeof(Page) + LinkPool::bytes_per_page() + 2 * sizeof(IdTable::Entry);
     const auto fitting = static_cast<std::uint32_t>(std::min<std::size_t>(
-        cache_bytes > 0 ? cache_bytes / sizeof(Page) : bytes / 100 * kPageShare / page_bytes,
+        cache_bytes > 0 ? cache_bytes / sizeof(Page) : shared / 100 * kPageShare / page_bytes,
         kMaxModels * std::size_t{kMaxRecords >> kRecordsPerChunkLog2}));
     const auto share_pages = [&](std::uint32_t pages)
     {

@@ -163,7 +163,7 @@ TEST(EditEffects, removing_the_support_of_a_tool_lets_its_force_go_in_small_step
 {
     PressedPlate sut;
     ASSERT_NO_FATAL_FAILURE(sut.press());
-    const std::vector<std::uint32_t> hole = sut.top_faces(3.0 * PressedPlate::kRadius_m);
+    const std::vector<std::uint32_t> hole = sut.top_faces(1.5 * PressedPlate::kRadius_m);
     ASSERT_GT(hole.size(), 20U);
     ASSERT_LE(hole.size(), kMaxEditFaces);
     sut.send(sut.author.removal_of(hole));
@@ -185,7 +185,7 @@ TEST(EditEffects, a_face_that_is_added_over_a_tool_makes_no_force_until_the_tool
     PressedPlate sut;
     ASSERT_NO_FATAL_FAILURE(sut.press());
     const double before_n = sut.sent_n.norm();
-    const std::vector<std::uint32_t> hole = sut.top_faces(3.0 * PressedPlate::kRadius_m);
+    const std::vector<std::uint32_t> hole = sut.top_faces(1.5 * PressedPlate::kRadius_m);
     sut.send(sut.author.removal_of(hole));
     for (int i = 0; i < 200; ++i)
     {
@@ -243,7 +243,7 @@ TEST(EditEffects, equal_faces_in_place_of_the_touched_ones_are_felt_as_nothing)
     PressedPlate sut;
     ASSERT_NO_FATAL_FAILURE(sut.press());
     const Vec3 before_n = sut.sent_n;
-    const std::vector<std::uint32_t> touched = sut.top_faces(2.0 * PressedPlate::kRadius_m);
+    const std::vector<std::uint32_t> touched = sut.top_faces(1.5 * PressedPlate::kRadius_m);
     OwnedEdit edit = sut.author.removal_of(touched);
     ASSERT_NO_FATAL_FAILURE(sut.add_equals(edit, touched));
     sut.send(edit);
@@ -287,7 +287,7 @@ TEST(EditEffects, of_a_model_that_is_refined_fully_are_exact_in_the_frame_of_the
 
 TEST(EditEffects, may_remove_every_face_and_bring_all_back)
 {
-    const TestModel& model = test_model("effects-least", make_uv_sphere(12, 24).value(), 100);
+    const TestModel& model = test_model("effects-least", make_uv_sphere(4, 7).value(), 20);
     Random random = Random::seeded(seed_of(6'520));
     EditedSoup soup(model, 1'000);
     EditAuthor author(soup, random);

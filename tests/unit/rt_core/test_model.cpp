@@ -23,12 +23,17 @@ std::uint32_t index_pages_kept(std::uint32_t index_pages, std::size_t bytes)
 }
 
 /// Plan for these models in this memory; empty if there is none.
-std::vector<ModelCapacities> plan_of(std::uint32_t records, std::size_t models, std::size_t bytes)
+std::vector<ModelCapacities> plan_of(std::uint32_t records, std::size_t models, std::size_t bytes,
+                                     std::uint32_t edit_faces = 0)
 {
     HeaderParts parts = sound_header(records);
     const auto coded = parts.write();
     const std::vector<ModelHeader> headers(models, parsed(coded));
     std::vector<ModelCapacities> capacities(models);
+    for (ModelCapacities& one : capacities)
+    {
+        one.edit_faces = edit_faces;
+    }
     return try_plan(headers, bytes, 0, capacities) ? capacities : std::vector<ModelCapacities>{};
 }
 
@@ -68,6 +73,24 @@ TEST(ModelCapacities, of_several_models_are_alike_and_fill_the_memory)
             EXPECT_GE(one.pages + 1, plan[0].pages);
         }
     }
+}
+
+TEST(ModelCapacities, beside_a_room_for_edits_are_those_of_the_memory_that_it_leaves)
+{
+    constexpr std::uint32_t kRecords = 1'000 * kRecordsPerChunk;
+    constexpr std::size_t kBytes = std::size_t{8} << 20U;
+    const std::vector<ModelCapacities> half = plan_of(kRecords, 2, kBytes / 2);
+    // 2 x 14,000 faces of 150 B are half of the memory.
+    const std::vector<ModelCapacities> beside = plan_of(kRecords, 2, kBytes, 14'000);
+    ASSERT_EQ(half.size(), 2U);
+    ASSERT_EQ(beside.size(), 2U);
+    for (const ModelCapacities& one : beside)
+    {
+        EXPECT_EQ(one.edit_faces, 14'000U);
+        EXPECT_NEAR(one.faces, half[0].faces, 0.1 * half[0].faces);
+        EXPECT_NEAR(one.pages, half[0].pages, 0.1 * half[0].pages);
+    }
+    EXPECT_TRUE(plan_of(kRecords, 2, kBytes / 2, 14'000).empty());
 }
 
 TEST(ModelCapacities, of_small_models_are_all_that_they_need)
