@@ -86,12 +86,12 @@ inline constexpr std::uint32_t kBroadWalks = 4;
 /// are refused (ChangeRefusal::too_many).
 inline constexpr std::uint32_t kMaxSceneChanges = 64;
 /// Largest number of faces that one edit removes, and that it adds; 48 B of both in a queue. A
-/// frame makes an edit whole, before its stages: at most 100,000 instructions of its budget of
+/// frame makes an edit whole, before its stages, with at most 100,000 instructions of its budget of
 /// work. A larger edit is refused (EditRefusal::too_large).
 inline constexpr std::uint32_t kMaxEditFaces = 48;
 /// Largest number of edits that a frame takes. Further ones of the same frame are refused
 /// (EditRefusal::too_many).
-inline constexpr std::uint32_t kMaxEditsPerFrame = 1;
+inline constexpr std::uint32_t kMaxEditsPerFrame = 2;
 /// Largest room of a model for faces that edits add; about 150 B each. Frame::start refuses more.
 inline constexpr std::uint32_t kMaxAddedFaces = 1U << 18U;
 /// Largest number of boxes round the removed faces of a model; 24 B each. With more, the two boxes

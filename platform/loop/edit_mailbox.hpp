@@ -27,7 +27,10 @@ class EditMailbox
 {
 public:
     /// Number of edits in the mailbox at most: those of 64 frames, between two polls of a network.
-    static constexpr std::size_t kEdits = 64 * std::size_t{kMaxEditsPerFrame};
+    static constexpr std::size_t kEdits = 64;
+    /// Edits of one frame: a second one would leave little of a fast loop's budget of work.
+    static constexpr std::size_t kEditsPerFrame = 1;
+    static_assert(kEditsPerFrame <= kMaxEditsPerFrame);
 
     EditMailbox() : cells_(kEdits) {}
 
@@ -35,7 +38,7 @@ public:
     /// edit has at most kMaxEditFaces faces of each kind (asserted).
     [[nodiscard]] bool try_put(ModelId model, const EditContent& edit) noexcept;
 
-    /// Haptic thread: edits for this frame, at most kMaxEditsPerFrame, valid until done().
+    /// Haptic thread: edits for this frame, at most kEditsPerFrame, valid until done().
     /// Allocates nothing.
     [[nodiscard]] std::span<const SurfaceEdit> edits() noexcept;
     /// Haptic thread: returns the cells of the edits from the last edits(). Nothing happens if
@@ -61,7 +64,7 @@ private:
     };
 
     std::vector<Cell> cells_;
-    std::array<SurfaceEdit, kMaxEditsPerFrame> views_{};
+    std::array<SurfaceEdit, kEditsPerFrame> views_{};
     std::size_t shown_{0}; ///< Number of edits from the last edits().
     alignas(64) std::atomic<std::uint64_t> head_{0};
     alignas(64) std::atomic<std::uint64_t> tail_{0};

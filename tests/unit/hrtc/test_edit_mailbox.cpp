@@ -60,17 +60,17 @@ TEST(EditMailbox, refuses_an_edit_too_many_and_has_room_once_a_frame_is_done)
     }
     EXPECT_FALSE(try_put(sut, next));
     const auto edits = sut.edits();
-    ASSERT_EQ(edits.size(), kMaxEditsPerFrame);
+    ASSERT_EQ(edits.size(), EditMailbox::kEditsPerFrame);
     EXPECT_FALSE(try_put(sut, next)); // The frame still reads them.
     expect_is(edits[0], 1);
     sut.done();
-    EXPECT_EQ(sut.taken(), kMaxEditsPerFrame);
-    for (std::uint32_t i = 0; i < kMaxEditsPerFrame; ++i)
+    EXPECT_EQ(sut.taken(), EditMailbox::kEditsPerFrame);
+    for (std::uint32_t i = 0; i < EditMailbox::kEditsPerFrame; ++i)
     {
         EXPECT_TRUE(try_put(sut, next++));
     }
     EXPECT_FALSE(try_put(sut, next));
-    expect_is(sut.edits()[0], 1 + kMaxEditsPerFrame);
+    expect_is(sut.edits()[0], 1 + EditMailbox::kEditsPerFrame);
 }
 
 TEST(EditMailbox, edits_that_are_not_done_are_shown_again)
@@ -106,7 +106,7 @@ TEST(EditMailbox, passes_all_edits_in_order_between_two_threads)
     while (taken < kAll)
     {
         const auto edits = sut.edits();
-        ASSERT_LE(edits.size(), kMaxEditsPerFrame);
+        ASSERT_LE(edits.size(), EditMailbox::kEditsPerFrame);
         for (const SurfaceEdit& edit : edits)
         {
             expect_is(edit, ++taken);
