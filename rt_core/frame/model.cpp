@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/model.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -354,6 +356,8 @@ void Model::dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& 
 /// Returns the model's reserved memory: the model is known again.
 void Model::end_stay() noexcept
 {
+    TACTUS_ASSERT(stage == ModelStage::wanted || stage == ModelStage::leaving);
+    TACTUS_ASSERT(forest.active_faces() == 0);
     forest.end_promise();
     tree.end_promise();
     shared_->base_room.give_back(first_cell_);
@@ -363,6 +367,7 @@ void Model::end_stay() noexcept
 
 double Model::horizon_s(std::int64_t period_ns) const noexcept
 {
+    TACTUS_ASSERT(period_ns > 0);
     const double latency_s = cache.latency().most_frames() * static_cast<double>(period_ns) * 1e-9;
     return std::min(latency_s + kRefineTime_s, kLongestHorizon_s);
 }

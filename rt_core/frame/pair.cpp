@@ -114,7 +114,10 @@ Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) 
     , stood_(parts.object->pose)
     , feel_(parts.object->spec.material)
 {
+    TACTUS_ASSERT(parts.rules != nullptr);
+    TACTUS_ASSERT(parts.model.model != nullptr);
     const ToolSpec& tool = parts.tool->spec();
+    TACTUS_ASSERT(is_mesh(tool) == (parts.tool_model.model != nullptr));
     contacts_ = wants_contacts(tool) ? &memory.contacts[index] : nullptr;
     touches_ = Tool::is_held_as_rigid(tool) ? &memory.touches[index] : nullptr;
     mesh_ = is_mesh(tool) ? &memory.meshes[index] : nullptr;
@@ -126,6 +129,7 @@ Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) 
 
 void Pair::place(const Budgets& budgets) noexcept
 {
+    TACTUS_ASSERT(parts_.rules->work != nullptr);
     const ToolPlacement& placement = parts_.tool->placement();
     is_model_here_ = parts_.model.model->is_resident();
     feels_otherwise_ =
@@ -374,6 +378,7 @@ void Pair::ask_for_spheres() noexcept
         question.memory = memory++;
         ask(looks_ahead, model, looks_ahead ? ahead_of(question) : question, of_object_);
     }
+    TACTUS_ASSERT(memory <= &refine_memories_.back()); // A cover has at most kMaxCoverSpheres.
     for (const auto* const end = &refine_memories_.back(); memory != end; ++memory)
     {
         memory->is_known = false;
@@ -585,6 +590,7 @@ void Pair::doubt() noexcept
 
 void Pair::follow(const SurfaceEdit& edit) noexcept
 {
+    TACTUS_ASSERT(edit.model == model());
     const Tool& tool = *parts_.tool;
     if (!is_joined_ || !tool.is_held())
     {
@@ -737,6 +743,7 @@ void Pair::narrow(DistanceAnswer& answer) const noexcept
 
 void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
 {
+    TACTUS_ASSERT(contacts_ != nullptr); // Each mesh has a report.
     const ToolSpec& tool = parts_.tool->spec();
     const ObjectPose& pose = parts_.object->pose;
     DistanceAnswer& answer = surface_.answer;

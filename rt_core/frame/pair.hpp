@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/force/material_blend.hpp"
 #include "rt_core/frame/mesh_pair.hpp"
@@ -68,6 +69,7 @@ struct SurfaceRoom
     /// Empty surface with as much of the memory as one surface may use.
     [[nodiscard]] LocalSurface surface() const noexcept
     {
+        TACTUS_ASSERT(triangles.size() == distances_m.size());
         LocalSurface surface;
         const std::size_t most = std::min<std::size_t>(triangles.size(), kMaxLocalTriangles);
         surface.triangles = triangles.first(most);
@@ -76,6 +78,7 @@ struct SurfaceRoom
     }
     [[nodiscard]] SurfaceRoom after(std::uint32_t count) const noexcept
     {
+        TACTUS_ASSERT(count <= triangles.size());
         return {triangles.subspan(count), distances_m.subspan(count)};
     }
 };
