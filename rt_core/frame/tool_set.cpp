@@ -67,7 +67,7 @@ FrameFault ToolSet::begin(std::span<const ToolState> samples, const AwakePairs& 
         {
             if (!pair->has_moved())
             {
-                pair->stand();
+                pair->clear_velocities();
             }
             else if (pair->is_joined())
             {
