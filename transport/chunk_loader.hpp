@@ -54,6 +54,7 @@ struct ChunkLoaderCounters
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_hash + refused_content; }
 };
 
+/// Limits and times of a chunk loader.
 struct ChunkLoaderOptions
 {
     /// Maximum number of open requests, 64 B each; above 0 (asserted).

@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/smallest_union.hpp"
 
 #include <fmt/format.h>
 
@@ -20,19 +21,6 @@ namespace
 {
 
 static_assert(kMaxRemovedBoxes < 256); // Type of box_of_edit_.
-
-bool holds(const Aabb& outer, const Aabb& inner)
-{
-    Aabb both = outer;
-    both.add(inner);
-    return both == outer;
-}
-
-/// Sum of a box's edge lengths, which also orders boxes without a volume.
-double size_of(const Aabb& box)
-{
-    return (to_vec3(box.high) - to_vec3(box.low)).sum();
-}
 
 /// Fills edits up to their limits, in the order of the calls.
 class StepPacker
@@ -194,23 +182,9 @@ std::uint32_t EditState::box_for(const Aabb& box)
     {
         return static_cast<std::uint32_t>(boxes_.size() - 1);
     }
-    std::size_t first = 0;
-    std::size_t second = 1;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < boxes_.size(); ++i)
-    {
-        for (std::size_t k = i + 1; k < boxes_.size(); ++k)
-        {
-            Aabb both = boxes_[i];
-            both.add(boxes_[k]);
-            if (size_of(both) < least)
-            {
-                least = size_of(both);
-                first = i;
-                second = k;
-            }
-        }
-    }
+    const auto pair = smallest_union(boxes_);
+    const std::size_t first = pair.first; // Lambdas of clang 14 capture no structured binding.
+    const std::size_t second = pair.second;
     // The last box takes the place of the second one.
     const std::size_t last = boxes_.size() - 1;
     boxes_[first].add(boxes_[second]);

@@ -92,6 +92,7 @@ struct RefinementStateObject
     return shown;
 }
 
+/// A tool on the controller, and the state of its force.
 struct RefinementStateTool
 {
     SafetyState state{SafetyState::reset};

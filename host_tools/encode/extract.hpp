@@ -23,6 +23,7 @@ struct ExtractRequest
     std::optional<Zone> zone;      ///< Zone of full resolution, in the source's frame.
 };
 
+/// Result of an extraction.
 struct Extraction
 {
     TriangleMesh mesh;           ///< Mesh in the source's frame, in metres.

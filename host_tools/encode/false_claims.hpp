@@ -13,6 +13,7 @@
 namespace tactus
 {
 
+/// Effort of a check of claims.
 struct ClaimCheck
 {
     /// Number of points of the source that are checked against the error bounds in each of some ten
@@ -23,6 +24,7 @@ struct ClaimCheck
     std::function<void(std::size_t done)> progress = [](std::size_t) {};
 };
 
+/// Result of a check of claims.
 struct ClaimsFound
 {
     /// Reason why a record cannot be split; `false_claims` is then empty. Empty if all can be

@@ -23,6 +23,7 @@ namespace tactus
 /// 2 MiB.
 inline constexpr std::uint32_t kGrownBaseFaces = 2'000;
 
+/// Options of the file that is written.
 struct EncodeOptions
 {
     /// Bits of the prepared mesh; its coordinates must fit (asserted).

@@ -11,12 +11,14 @@
 namespace tactus
 {
 
+/// All points within a radius of a centre.
 struct SphereZone
 {
     Vec3 center_m{0.0, 0.0, 0.0};
     double radius_m{0.0}; ///< Radius; 0 or more.
 };
 
+/// All points between two corners.
 struct BoxZone
 {
     Vec3 low_m{0.0, 0.0, 0.0};

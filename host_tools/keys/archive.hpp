@@ -9,6 +9,7 @@
 namespace tactus::keys
 {
 
+/// One file of an archive.
 struct ArchivedFile
 {
     std::string name; ///< Name within the folder, with it at most 99 bytes.

@@ -17,6 +17,7 @@ namespace tactus::keys
 /// Drop-in for the service, beside the keys.
 inline constexpr const char* kCredentialsFile = "credentials.conf";
 
+/// A program of a site, which gets keys of its own.
 struct Member
 {
     Role role{Role::server};

@@ -33,6 +33,7 @@ struct Absorption
         steps; ///< Steps in order: the flattening (tetrahedron only), t -> x, s -> y, x -> d.
 };
 
+/// Absorptions that can be made together.
 struct AbsorptionPlan
 {
     std::vector<Absorption> absorptions; ///< Absorptions that share no face, cheapest first.

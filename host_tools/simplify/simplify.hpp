@@ -50,6 +50,7 @@ struct Simplification
     bool is_closed{false};         ///< True if the mesh has no border.
 };
 
+/// Options of a simplification.
 struct SimplifyOptions
 {
     /// Number of faces at or below which simplification stops; 1 or more.

@@ -391,6 +391,43 @@ std::optional<Refusal> save_edits(const Options& options, const EditedModels& ed
     return std::nullopt;
 }
 
+/// Prints what was sent, and prints and saves the edits.
+std::optional<Refusal> end_serving(const Options& options, dds::DdsServer& server,
+                                   const Extras& extras, ServingReport& report)
+{
+    const auto counters = server.counters();
+    report.print_line(fmt::format("ended; {} chunks, {:.1f} KB sent", counters.pieces_sent,
+                                  static_cast<double>(counters.bytes_sent) / 1e3));
+    if (!extras.edited)
+    {
+        return std::nullopt;
+    }
+    print_edits(*extras.edited, server, report);
+    return save_edits(options, *extras.edited, report);
+}
+
+/// Objects of the scene, or of the models without one; an exit code after a line on stderr. Sets
+/// the names of a scene's models.
+std::variant<std::vector<Prop>, int> find_props(const CommandLine& line, Options& options)
+{
+    if (!options.has_scene)
+    {
+        return props_of(options.names);
+    }
+    auto placed = open_scene(options);
+    if (!placed)
+    {
+        return line.fail(placed.error().text);
+    }
+    auto names = choose_names(options.files, {});
+    if (!names)
+    {
+        return line.fail(names.error().text, kExitUsage);
+    }
+    options.names = std::move(names).value();
+    return std::move(placed).value();
+}
+
 int run(int argc, char** argv)
 {
     CommandLine line("spm_publish", "Serves SPM models to controllers over DDS.");
@@ -400,26 +437,12 @@ int run(int argc, char** argv)
         return *code;
     }
     auto& options = std::get<Options>(parsed);
-    std::vector<Prop> props;
-    if (options.has_scene)
+    auto found = find_props(line, options);
+    if (const int* code = std::get_if<int>(&found))
     {
-        auto placed = open_scene(options);
-        if (!placed)
-        {
-            return line.fail(placed.error().text);
-        }
-        props = std::move(placed).value();
-        auto names = choose_names(options.files, {});
-        if (!names)
-        {
-            return line.fail(names.error().text, kExitUsage);
-        }
-        options.names = std::move(names).value();
+        return *code;
     }
-    else
-    {
-        props = props_of(options.names);
-    }
+    auto& props = std::get<std::vector<Prop>>(found);
     auto models = open_models(options);
     if (!models)
     {
@@ -472,18 +495,8 @@ int run(int argc, char** argv)
     print_models(report, *server.value(), options.scene, options.domain);
     extras.value().namesakes = namesakes ? &namesakes.value() : nullptr;
     serve(*server.value(), report, extras.value(), options.seconds);
-    const auto counters = server.value()->counters();
-    report.print_line(fmt::format("ended; {} chunks, {:.1f} KB sent", counters.pieces_sent,
-                                  static_cast<double>(counters.bytes_sent) / 1e3));
-    if (const auto& edited = extras.value().edited)
-    {
-        print_edits(*edited, *server.value(), report);
-        if (const auto refusal = save_edits(options, *edited, report))
-        {
-            return line.fail(refusal->text);
-        }
-    }
-    return kExitDone;
+    const auto refusal = end_serving(options, *server.value(), extras.value(), report);
+    return refusal ? line.fail(refusal->text) : kExitDone;
 }
 
 } // namespace

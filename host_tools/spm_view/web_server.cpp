@@ -94,12 +94,15 @@ std::optional<Number> number_in(const std::string& text)
 
 } // namespace
 
-struct WebServer::Inside
+struct WebServer::Impl
 {
-    explicit Inside(const Parts& of) : parts(of) {}
+    explicit Impl(const Parts& of) : parts(of) {}
 
     [[nodiscard]] std::optional<Refusal> read_libraries();
     void declare_answers();
+    void declare_files();
+    void declare_states();
+    void declare_built();
     [[nodiscard]] std::string state_for(const httplib::Request& request) const;
     void send_states(const httplib::Request& request, httplib::Response& response) const;
     /// Server-sent events: the shortest interval between two, and the event for a snapshot; empty
@@ -133,7 +136,7 @@ struct WebServer::Inside
     httplib::Server& server{local.server()};
 };
 
-std::optional<Refusal> WebServer::Inside::read_libraries()
+std::optional<Refusal> WebServer::Impl::read_libraries()
 {
     for (const Library& library : kLibraries)
     {
@@ -151,7 +154,14 @@ std::optional<Refusal> WebServer::Inside::read_libraries()
     return std::nullopt;
 }
 
-void WebServer::Inside::declare_answers()
+void WebServer::Impl::declare_answers()
+{
+    declare_files();
+    declare_states();
+    declare_built();
+}
+
+void WebServer::Impl::declare_files()
 {
     using httplib::Request;
     using httplib::Response;
@@ -171,6 +181,12 @@ void WebServer::Inside::declare_answers()
         server.Get(library.url, [this, &library](const Request&, Response& response)
                    { response.set_content(libraries.at(library.url), library.type); });
     }
+}
+
+void WebServer::Impl::declare_states()
+{
+    using httplib::Request;
+    using httplib::Response;
     server.Get("/state", [this](const Request& request, Response& response)
                { response.set_content(state_for(request), "application/json"); });
     server.Get("/states", [this](const Request& request, Response& response)
@@ -187,6 +203,13 @@ void WebServer::Inside::declare_answers()
                { send_states_live(request, response); });
     server.Get("/feed", [this](const Request& request, Response& response)
                { send_feed(request, response); });
+}
+
+/// Declares the answers that are built from a controller's refinement state.
+void WebServer::Impl::declare_built()
+{
+    using httplib::Request;
+    using httplib::Response;
     server.Get("/front",
                [this](const Request& request, Response& response)
                {
@@ -232,7 +255,7 @@ void WebServer::Inside::declare_answers()
                });
 }
 
-std::string WebServer::Inside::state_for(const httplib::Request& request) const
+std::string WebServer::Impl::state_for(const httplib::Request& request) const
 {
     const std::string chosen = request.get_param_value("controller");
     if (parts.films == nullptr)
@@ -244,8 +267,8 @@ std::string WebServer::Inside::state_for(const httplib::Request& request) const
 }
 
 /// Sends `count` states of the films, `step` frames apart; the last one is that of `frame`.
-void WebServer::Inside::send_states(const httplib::Request& request,
-                                    httplib::Response& response) const
+void WebServer::Impl::send_states(const httplib::Request& request,
+                                  httplib::Response& response) const
 {
     const auto number = [&request](const char* name)
     { return number_in<std::uint64_t>(request.get_param_value(name)); };
@@ -275,8 +298,7 @@ void WebServer::Inside::send_states(const httplib::Request& request,
 }
 
 /// Sends the whole newest state at each change.
-void WebServer::Inside::send_states_live(const httplib::Request& request,
-                                         httplib::Response& response)
+void WebServer::Impl::send_states_live(const httplib::Request& request, httplib::Response& response)
 {
     const std::string chosen = request.get_param_value("controller");
     send_events(response, {kEventPeriod, [this, chosen](const Snapshot& news) {
@@ -286,7 +308,7 @@ void WebServer::Inside::send_states_live(const httplib::Request& request,
 }
 
 /// Sends each new state of one controller: that of an identity or name, or the first one.
-void WebServer::Inside::send_feed(const httplib::Request& request, httplib::Response& response)
+void WebServer::Impl::send_feed(const httplib::Request& request, httplib::Response& response)
 {
     if (parts.films != nullptr)
     {
@@ -314,7 +336,7 @@ void WebServer::Inside::send_feed(const httplib::Request& request, httplib::Resp
     send_events(response, {milliseconds(0), event});
 }
 
-void WebServer::Inside::send_events(httplib::Response& response, const Events& events)
+void WebServer::Impl::send_events(httplib::Response& response, const Events& events)
 {
     if (viewers.fetch_add(1) >= kViewersMax)
     {
@@ -332,8 +354,7 @@ void WebServer::Inside::send_events(httplib::Response& response, const Events& e
 
 /// Waits for news and sends one event for the newest state, so that a slow viewer skips states and
 /// gets no old ones. `seen` is the serial of the last snapshot.
-bool WebServer::Inside::send_next(httplib::DataSink& sink, const Events& events,
-                                  std::uint64_t& seen)
+bool WebServer::Impl::send_next(httplib::DataSink& sink, const Events& events, std::uint64_t& seen)
 {
     const auto start = Clock::now();
     std::string event;
@@ -360,8 +381,8 @@ bool WebServer::Inside::send_next(httplib::DataSink& sink, const Events& events,
     return sink.write(event.data(), event.size());
 }
 
-void WebServer::Inside::send_built(const httplib::Request& request, httplib::Response& response,
-                                   const std::string& what, const Build& build)
+void WebServer::Impl::send_built(const httplib::Request& request, httplib::Response& response,
+                                 const std::string& what, const Build& build)
 {
     const auto serial = number_in<std::uint64_t>(request.get_param_value("serial"));
     const auto hash = parse_hash(request.get_param_value("model"));
@@ -404,7 +425,7 @@ void WebServer::Inside::send_built(const httplib::Request& request, httplib::Res
     response.set_content(*bytes.value(), "application/octet-stream");
 }
 
-std::shared_ptr<const std::string> WebServer::Inside::find_kept(const std::string& name)
+std::shared_ptr<const std::string> WebServer::Impl::find_kept(const std::string& name)
 {
     const std::lock_guard lock(kept_mutex);
     const auto found = std::ranges::find(kept, name, &decltype(kept)::value_type::first);
@@ -412,8 +433,8 @@ std::shared_ptr<const std::string> WebServer::Inside::find_kept(const std::strin
 }
 
 Result<std::shared_ptr<const std::string>, Refusal>
-WebServer::Inside::built(const std::string& name,
-                         const std::function<Result<std::string, Refusal>()>& build)
+WebServer::Impl::built(const std::string& name,
+                       const std::function<Result<std::string, Refusal>()>& build)
 {
     if (auto known = find_kept(name))
     {
@@ -440,7 +461,7 @@ Result<std::unique_ptr<WebServer>, Refusal> WebServer::start(const Parts& parts,
     {
         return Refusal{fmt::format("--pages: '{}' is no folder", printable(parts.pages.string()))};
     }
-    auto inside = std::make_unique<Inside>(parts);
+    auto inside = std::make_unique<Impl>(parts);
     if (auto refusal = inside->read_libraries())
     {
         return *refusal;
@@ -453,7 +474,7 @@ Result<std::unique_ptr<WebServer>, Refusal> WebServer::start(const Parts& parts,
     return std::unique_ptr<WebServer>(new WebServer(std::move(inside)));
 }
 
-WebServer::WebServer(std::unique_ptr<Inside> inside) : inside_(std::move(inside)) {}
+WebServer::WebServer(std::unique_ptr<Impl> inside) : inside_(std::move(inside)) {}
 
 WebServer::~WebServer()
 {

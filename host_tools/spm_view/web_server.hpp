@@ -46,11 +46,11 @@ public:
     [[nodiscard]] std::uint16_t port() const noexcept;
 
 private:
-    struct Inside; ///< The only user of cpp-httplib.
+    struct Impl; ///< The only user of cpp-httplib.
 
-    explicit WebServer(std::unique_ptr<Inside> inside);
+    explicit WebServer(std::unique_ptr<Impl> inside);
 
-    std::unique_ptr<Inside> inside_;
+    std::unique_ptr<Impl> inside_;
 };
 
 } // namespace tactus::view

@@ -122,7 +122,7 @@ void restore_crash_signals() noexcept
 
 /// Signal handler: reports the crash and raises the signal again. The signal takes its former
 /// action when the handler returns.
-void tell_of_crash(int signal)
+void report_crash(int signal)
 {
     const int error = errno;
     [[maybe_unused]] const ssize_t written = ::write(crash_pipe.load(), &kCrashes, 1);
@@ -137,7 +137,7 @@ void watch_for_crashes(int pipe) noexcept
     for (std::size_t i = 0; i < kCrashSignals.size(); ++i)
     {
         struct sigaction action = {};
-        action.sa_handler = tell_of_crash;
+        action.sa_handler = report_crash;
         ::sigaction(kCrashSignals[i], &action, &former_actions()[i]);
     }
 }

@@ -189,7 +189,7 @@ Result<Guardian::Guards, Refusal> make_guards(const Options& options)
     return guards;
 }
 
-void tell_of_unguarded(const Options& options)
+void report_unguarded(const Options& options)
 {
     for (std::size_t tool = 0; tool < options.tools.size(); ++tool)
     {
@@ -259,7 +259,7 @@ Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options, 
     {
         return *error;
     }
-    tell_of_unguarded(session->options_);
+    report_unguarded(session->options_);
     return session;
 }
 
@@ -351,38 +351,41 @@ std::optional<Refusal> Session::assemble()
         return failure(controller.error().text);
     }
     controller_ = std::move(controller).value();
-    if (client_ != nullptr)
+    return client_ != nullptr ? connect_topics(has_servers) : std::nullopt;
+}
+
+/// Connects the controller with the topics of its servers and viewers.
+std::optional<Refusal> Session::connect_topics(bool has_servers)
+{
+    std::unique_ptr<SceneKeeper> keeper;
+    if (has_servers && options_.follows_poses)
     {
-        std::unique_ptr<SceneKeeper> keeper;
-        if (has_servers && options_.follows_poses)
-        {
-            keeper = std::make_unique<SceneKeeper>(authorities_, std::move(reader_),
-                                                   controller_->scene_parts(), scene_, log_line);
-        }
-        auto topics = ServerTopics::create(*client_, *controller_, authorities_, std::move(keeper),
-                                           options_.shows_refinement_state, log_line);
-        if (!topics)
-        {
-            return failure(topics.error().text);
-        }
-        topics_ = std::move(topics).value();
-        auto cuts = CutSender::create(client_->domain(), *controller_, options_);
-        if (!cuts)
-        {
-            return failure(cuts.error().text);
-        }
-        if (cuts.value() != nullptr && !topics_->has_edits())
-        {
-            return failure("--edit: no model can be edited; start its server with --edits");
-        }
-        if (cuts.value() != nullptr)
-        {
-            topics_->add_cuts(std::move(cuts).value());
-        }
-        for (std::uint32_t i = 0; i < options_.objects.size(); ++i)
-        {
-            topics_->name_object(i, options_.objects[i].name);
-        }
+        keeper = std::make_unique<SceneKeeper>(authorities_, std::move(reader_),
+                                               controller_->scene_parts(), scene_, log_line);
+    }
+    auto topics = ServerTopics::create(*client_, *controller_, authorities_, std::move(keeper),
+                                       options_.shows_refinement_state, log_line);
+    if (!topics)
+    {
+        return failure(topics.error().text);
+    }
+    topics_ = std::move(topics).value();
+    auto cuts = CutSender::create(client_->domain(), *controller_, options_);
+    if (!cuts)
+    {
+        return failure(cuts.error().text);
+    }
+    if (cuts.value() != nullptr && !topics_->has_edits())
+    {
+        return failure("--edit: no model can be edited; start its server with --edits");
+    }
+    if (cuts.value() != nullptr)
+    {
+        topics_->add_cuts(std::move(cuts).value());
+    }
+    for (std::uint32_t i = 0; i < options_.objects.size(); ++i)
+    {
+        topics_->name_object(i, options_.objects[i].name);
     }
     return std::nullopt;
 }

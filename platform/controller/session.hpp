@@ -71,6 +71,7 @@ private:
     [[nodiscard]] std::optional<Refusal> take_scene();
     void pin(const ModelSelector& name, bool is_scene, std::uint64_t server_epoch);
     [[nodiscard]] std::optional<Refusal> assemble();
+    [[nodiscard]] std::optional<Refusal> connect_topics(bool has_servers);
 
     /// Guardian, which must outlive the devices; null if no device needs one.
     std::unique_ptr<Guardian> guardian_;

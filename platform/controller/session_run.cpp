@@ -103,7 +103,7 @@ SessionRun::SessionRun(const RunParts& parts)
                  parts.trace != nullptr ? &parts.trace->tap() : nullptr, connected_program())
     , loop_(loop_parts(), done_.statistics)
     , devices_gone_(parts.controller.tools().size())
-    , strangers_(parts.controller.tools().size())
+    , datagrams_reported_(parts.controller.tools().size())
     , supervisor_({.tools = parts.controller.tools(),
                    .heartbeat = &loop_.heartbeat(),
                    .clock = &time_.clock(),
@@ -327,8 +327,8 @@ void SessionRun::watch(const std::string& what)
         if (!time_.is_virtual())
         {
             take_events();
-            tell_of_strangers();
-            tell_of_guardian();
+            report_refused_datagrams();
+            report_guardian();
         }
         std::this_thread::sleep_for(kLook);
     }
@@ -347,17 +347,17 @@ void SessionRun::take_events()
     for (const SafetyEvent& event : events)
     {
         done_.safety.add(event);
-        tell_of_device(event);
+        report_device(event);
     }
     if (parts_.hands != nullptr)
     {
         parts_.hands->note_brakes(supervisor_.brakes());
     }
-    tell_of_first_places();
+    report_first_places();
 }
 
 /// Logs, once, the tools whose first position is far outside the workspace or inside an object.
-void SessionRun::tell_of_first_places()
+void SessionRun::report_first_places()
 {
     const std::span<const Vec3> places_m = loop_.first_places_m();
     if (places_m.empty() || !done_.begins_inside.empty())
@@ -377,11 +377,11 @@ void SessionRun::tell_of_first_places()
                                  tool, away_m, device.workspace_radius_m));
         }
     }
-    tell_of_insides(places_m);
+    report_insides(places_m);
 }
 
 /// Logs and notes the tools that begin inside a closed object. Objects are at their first poses.
-void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
+void SessionRun::report_insides(std::span<const Vec3> places_m)
 {
     const Controller& controller = parts_.controller;
     for (std::size_t object = 0; object < controller.objects().size(); ++object)
@@ -418,7 +418,7 @@ void SessionRun::tell_of_insides(std::span<const Vec3> places_m)
 }
 
 /// Logs the loss and the return of a tool's device.
-void SessionRun::tell_of_device(const SafetyEvent& event)
+void SessionRun::report_device(const SafetyEvent& event)
 {
     const bool is_gone = has_cause(event.causes, ForceOff::disconnect);
     if (event.by_supervisor || is_gone == devices_gone_[event.tool])
@@ -437,9 +437,9 @@ void SessionRun::tell_of_device(const SafetyEvent& event)
 
 /// Logs refused datagrams to a UDP device's port at the first one, at ten, at a hundred, and so on.
 /// Ends the run if another device describes itself at the port.
-void SessionRun::tell_of_strangers()
+void SessionRun::report_refused_datagrams()
 {
-    for (std::size_t tool = 0; tool < strangers_.size(); ++tool)
+    for (std::size_t tool = 0; tool < datagrams_reported_.size(); ++tool)
     {
         const auto* udp =
             dynamic_cast<const UdpDevice*>(parts_.controller.tools()[tool].device.get());
@@ -458,9 +458,9 @@ void SessionRun::tell_of_strangers()
                 tool, udp->info().name));
         }
         const auto all = std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
-        if (all >= std::max<std::uint64_t>(10 * strangers_[tool], 1))
+        if (all >= std::max<std::uint64_t>(10 * datagrams_reported_[tool], 1))
         {
-            strangers_[tool] = all;
+            datagrams_reported_[tool] = all;
             const auto most = std::ranges::max_element(refused) - refused.begin();
             const auto fault = static_cast<udp::DatagramFault>(most);
             const bool has_value =
@@ -474,7 +474,7 @@ void SessionRun::tell_of_strangers()
 }
 
 /// Logs the guardian's death. The run goes on; forces still fade while this process lives.
-void SessionRun::tell_of_guardian()
+void SessionRun::report_guardian()
 {
     if (parts_.guardian != nullptr && parts_.guardian->has_died())
     {

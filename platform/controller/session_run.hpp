@@ -90,11 +90,11 @@ private:
     void work_between_frames();
     void watch(const std::string& what);
     void take_events();
-    void tell_of_first_places();
-    void tell_of_insides(std::span<const Vec3> places_m);
-    void tell_of_device(const SafetyEvent& event);
-    void tell_of_strangers();
-    void tell_of_guardian();
+    void report_first_places();
+    void report_insides(std::span<const Vec3> places_m);
+    void report_device(const SafetyEvent& event);
+    void report_refused_datagrams();
+    void report_guardian();
     void end_after_failure();
     [[nodiscard]] std::string keep_failed_frame();
     void finish_recording();
@@ -119,7 +119,7 @@ private:
     /// One a tool: true if its device was last logged as lost.
     std::vector<bool> devices_gone_;
     /// Number of refused datagrams at the last log line, one a tool.
-    std::vector<std::uint64_t> strangers_;
+    std::vector<std::uint64_t> datagrams_reported_;
     RateLimitedLog device_log_{log_line};
     Supervisor supervisor_;
     std::optional<AssertionBrake> brake_;

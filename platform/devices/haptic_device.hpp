@@ -79,6 +79,7 @@ enum class DeviceState
     brake  ///< Writes are ignored; the device damps its motion.
 };
 
+/// State and counts of a device since its start.
 struct DeviceStatus
 {
     DeviceState state{DeviceState::idle};

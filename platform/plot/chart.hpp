@@ -26,6 +26,7 @@ struct Mark
     MarkKind kind{MarkKind::plain};
 };
 
+/// One line of a chart.
 struct Line
 {
     std::string name;

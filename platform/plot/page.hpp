@@ -11,18 +11,21 @@
 namespace tactus::plot
 {
 
+/// Head of a column.
 struct Column
 {
     std::string name;
     bool is_number{true}; ///< Aligned to the right.
 };
 
+/// Lines of text in columns.
 struct Table
 {
     std::vector<Column> columns; ///< Columns; if all names are empty there is no head.
     std::vector<std::vector<std::string>> lines;
 };
 
+/// A table with a heading above it.
 struct TitledTable
 {
     std::string title;

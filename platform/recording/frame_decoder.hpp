@@ -50,6 +50,7 @@ private:
     std::vector<Faces> faces_; ///< Faces of `edits_`, whose views stay valid when this grows.
 };
 
+/// Inputs of one frame, and the hashes of its results.
 struct RecordedFrame
 {
     std::int64_t now_ns{0};

@@ -63,6 +63,7 @@ struct RecordedName
     auto operator<=>(const RecordedName&) const noexcept = default;
 };
 
+/// Set-up of the frame at the start of the run, with the program that recorded it.
 struct RecordedSetup
 {
     std::int64_t period_ns{1'000'000};

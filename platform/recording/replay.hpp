@@ -24,6 +24,7 @@ struct ReplayDifference
     std::string text;       ///< Difference, in words that follow "frame N differs: ".
 };
 
+/// Result of a replay.
 struct ReplayReport
 {
     std::uint64_t frames{0}; ///< Number of replayed frames, including the one that differs.

@@ -75,7 +75,7 @@ constexpr std::uint32_t kHasEditFaces = 2;
 /// Bits of a tool's two flag bytes, two bits each.
 constexpr std::uint32_t kWantsContacts = 1;
 constexpr std::uint32_t kWantsPairs = 2;
-constexpr std::uint32_t kPassesThrough = 1;
+constexpr std::uint32_t kQueryOnly = 1;
 constexpr std::uint32_t kWantsDistance = 2;
 
 Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
@@ -93,13 +93,13 @@ Fault parse_tools(ByteReader& reader, std::uint32_t tools, std::uint32_t models,
         tool.wants_pairs = (wants & kWantsPairs) != 0;
         tool.torque_max_nm = reader.read<double>();
         const auto requests = reader.read<std::uint8_t>();
-        tool.query_only = (requests & kPassesThrough) != 0;
+        tool.query_only = (requests & kQueryOnly) != 0;
         tool.wants_distance = (requests & kWantsDistance) != 0;
         tool.angular_stiffness_nm_per_rad = reader.read<double>();
         tool.shading_m = reader.read<double>();
         const std::optional<ToolCore> core = read_core(reader, setup.hull_vertices);
         if (!core || wants > (kWantsContacts | kWantsPairs) ||
-            requests > (kPassesThrough | kWantsDistance))
+            requests > (kQueryOnly | kWantsDistance))
         {
             return "tool " + std::to_string(i) +
                    " has an unknown core, a core beyond 1e6 m, or a hull without 1 to 64 vertices";
@@ -181,6 +181,45 @@ Fault check(const ModelCapacities& capacities, std::uint32_t base_faces)
     return std::nullopt;
 }
 
+/// Fault of the numbers of a setup's parts; none if they are in their ranges.
+Fault check_counts(std::uint32_t tools, std::uint32_t objects, std::uint32_t models,
+                   const SceneCapacities& capacities)
+{
+    if (tools < 1 || tools > kMaxTools || models < 1 || models > kMaxModels)
+    {
+        return "the setup has " + std::to_string(tools) + " tools and " + std::to_string(models) +
+               " models; " + up_to(kMaxTools) + " and " + up_to(kMaxModels) + " are allowed";
+    }
+    if (capacities.objects < 1 || capacities.objects > kMaxObjects ||
+        objects > capacities.objects || capacities.pairs < 1 || capacities.pairs > kMaxPairs)
+    {
+        return "the setup has " + std::to_string(objects) + " objects and room for " +
+               std::to_string(capacities.objects) + " objects and " +
+               std::to_string(capacities.pairs) + " pairs; the room must be " + up_to(kMaxObjects) +
+               " objects and " + up_to(kMaxPairs) + " pairs, and enough for the objects";
+    }
+    return std::nullopt;
+}
+
+/// Fault of the rules of a setup; none if they are in their ranges.
+Fault check_rules(std::uint32_t is_static, std::uint32_t prediction, std::int64_t period_ns)
+{
+    if (is_static > 1)
+    {
+        return "the static mode is " + std::to_string(is_static) + "; 0 and 1 are allowed";
+    }
+    if (prediction > static_cast<std::uint32_t>(Prediction::automatic))
+    {
+        return "the prediction is " + std::to_string(prediction) + "; 0 to " +
+               std::to_string(kPredictions) + " are allowed";
+    }
+    if (period_ns < 1 || period_ns > 1'000'000'000)
+    {
+        return "the period is " + std::to_string(period_ns) + " ns; 1 to 1000000000 are allowed";
+    }
+    return std::nullopt;
+}
+
 } // namespace
 
 std::vector<std::byte> code_setup(const RecordedSetup& setup)
@@ -205,7 +244,7 @@ std::vector<std::byte> code_setup(const RecordedSetup& setup)
         append(bytes, static_cast<std::uint8_t>((tool.wants_contacts ? kWantsContacts : 0U) |
                                                 (tool.wants_pairs ? kWantsPairs : 0U)));
         append(bytes, tool.torque_max_nm);
-        append(bytes, static_cast<std::uint8_t>((tool.query_only ? kPassesThrough : 0U) |
+        append(bytes, static_cast<std::uint8_t>((tool.query_only ? kQueryOnly : 0U) |
                                                 (tool.wants_distance ? kWantsDistance : 0U)));
         append(bytes, tool.angular_stiffness_nm_per_rad);
         append(bytes, tool.shading_m);
@@ -270,32 +309,13 @@ std::optional<std::string> parse_setup(std::span<const std::byte> payload, Recor
     SceneCapacities& capacities = setup.capacities;
     capacities.objects = reader.read<std::uint16_t>();
     capacities.pairs = reader.read<std::uint8_t>();
-    if (tools < 1 || tools > kMaxTools || models < 1 || models > kMaxModels)
+    if (Fault fault = check_counts(tools, objects, models, capacities))
     {
-        return "the setup has " + std::to_string(tools) + " tools and " + std::to_string(models) +
-               " models; " + up_to(kMaxTools) + " and " + up_to(kMaxModels) + " are allowed";
+        return fault;
     }
-    if (capacities.objects < 1 || capacities.objects > kMaxObjects ||
-        objects > capacities.objects || capacities.pairs < 1 || capacities.pairs > kMaxPairs)
+    if (Fault fault = check_rules(is_static, prediction, setup.period_ns))
     {
-        return "the setup has " + std::to_string(objects) + " objects and room for " +
-               std::to_string(capacities.objects) + " objects and " +
-               std::to_string(capacities.pairs) + " pairs; the room must be " + up_to(kMaxObjects) +
-               " objects and " + up_to(kMaxPairs) + " pairs, and enough for the objects";
-    }
-    if (is_static > 1)
-    {
-        return "the static mode is " + std::to_string(is_static) + "; 0 and 1 are allowed";
-    }
-    if (setup.prediction > Prediction::automatic)
-    {
-        return "the prediction is " + std::to_string(prediction) + "; 0 to " +
-               std::to_string(kPredictions) + " are allowed";
-    }
-    if (setup.period_ns < 1 || setup.period_ns > 1'000'000'000)
-    {
-        return "the period is " + std::to_string(setup.period_ns) +
-               " ns; 1 to 1000000000 are allowed";
+        return fault;
     }
     if (Fault fault = parse_tools(reader, tools, models, setup))
     {

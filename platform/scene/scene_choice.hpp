@@ -27,6 +27,7 @@ struct ServerObject
     auto operator<=>(const ServerObject&) const noexcept = default;
 };
 
+/// Scene of a server, as the controller shows it.
 struct ShownScene
 {
     std::string name;

@@ -16,6 +16,7 @@
 namespace tactus
 {
 
+/// Capacities of a pool of trees, or the part of one tree.
 struct TreeCapacities
 {
     std::uint32_t prims{0};

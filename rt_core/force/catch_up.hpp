@@ -25,7 +25,7 @@ class CatchUp
 public:
     /// Input of next(), which returns the next force to send.
     /// - `wanted` is no longer than `longest`.
-    /// - `rate_per_s` > 0.
+    /// - `rate_per_s` >= 0; 0 for the torque of a tool without one.
     struct Command
     {
         Vec3 wanted{0.0, 0.0, 0.0};

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/proxy.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/force/texture.hpp"
 #include "rt_core/math/infinity.hpp"
 
@@ -327,6 +328,7 @@ Proxy::Motion Proxy::follow(const Vec3& goal, double travel,
         hold_ = feel_at(near, surfaces, goal - position_, kNearlyTouching * radius_).hold;
     }
     in_contact_ = hold_.touches;
+    TACTUS_ASSERT(!in_contact_ || hold_.depth_m > 0.0); // Sums of the hold are divided by it.
     slides_ = has_slid_ && in_contact_;
     keep_clearances(surfaces, &near);
     planes_left_ = near.planes_left();
@@ -356,6 +358,7 @@ Proxy::Motion Proxy::follow_among(Vicinity& near, std::span<const PlacedSurface>
             return Motion::out_of_planes;
         }
         ++steps_;
+        TACTUS_ASSERT(steps_ <= kProxySteps);
         near.stand_at(position_ - anchor_, normal_);
         // `room` is the distance that is free of unlisted and uncertified triangles.
         const double moved = (position_ - anchor_).norm();
@@ -503,6 +506,7 @@ ForceShading::Felt Proxy::hold_smoothly(Vicinity& near, Touch& touch,
 void Proxy::press_smoothly(Hold& hold, const ForceShading::Felt& felt, const Vec3& pressed) noexcept
 {
     const double depth_m = pressed.norm();
+    TACTUS_ASSERT(depth_m > felt.raised_m); // ForceShading raises a goal by less than its depth.
     const double whole = depth_m / (depth_m - felt.raised_m);
     hold.static_m *= whole;
     hold.dynamic_m *= whole;
@@ -625,6 +629,7 @@ void Proxy::carry(std::span<const NearObject> objects, double elapsed_s) noexcep
     {
         return;
     }
+    TACTUS_ASSERT(elapsed_s > 0.0);
     const auto along = [this](const NearObject& object)
     { return to_world(*object.now, to_model(*object.before, position_)); };
     for (const NearObject& object : objects)

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/force/rigid_proxy.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/texture.hpp"
 #include "rt_core/math/rotation.hpp"
@@ -107,6 +108,7 @@ double angular_lever_m(const ToolSpec& spec) noexcept
 RigidProxy::RigidProxy(const ToolSpec& spec, Planes& planes) noexcept
     : spec_(spec), size_m_(size_of(spec)), arm_m_(arm_of(spec)), planes_(&planes)
 {
+    TACTUS_ASSERT(arm_m_ > 0.0);
     const PlacedCore core(spec.core, Similarity{});
     center_m_ = core.center();
     core_radius_m_ = core.radius();
@@ -133,6 +135,7 @@ void RigidProxy::carry(std::span<const NearObject> objects, double elapsed_s) no
     {
         if (object.has_moved())
         {
+            TACTUS_ASSERT(elapsed_s > 0.0);
             const ObjectPose& before = *object.before;
             const ObjectPose& now = *object.now;
             const Vec3 along_m = to_world(now, to_model(before, place_.translation_m));
@@ -420,6 +423,7 @@ void RigidProxy::gather(const ProxyGoal& goal, std::span<const PlacedSurface> su
     planes_->begin(place_.translation_m, arm_m_, size_m_, radius_m_, gone_);
     for (std::uint32_t i = 0; i < surfaces.size(); ++i)
     {
+        TACTUS_ASSERT(surfaces[i].touches != nullptr); // Pairs of rigid tools report touches.
         const TouchReport& touches = *surfaces[i].touches;
         exceeds_capacity_ = exceeds_capacity_ || touches.is_truncated;
         add(i, touches.corners.view(), surfaces[i], goal.elapsed_s);

@@ -2,8 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/forest/edited_surface.hpp"
 
+#include "rt_core/math/smallest_union.hpp"
+
 #include <algorithm>
-#include <limits>
 
 namespace tactus
 {
@@ -13,23 +14,6 @@ namespace
 
 /// Buckets are ranks of faces, in eighths; AB-Tree paths have room for no more.
 constexpr std::uint32_t kBucketEnd = 1U << 31U;
-
-Aabb union_of(Aabb a, const Aabb& b) noexcept
-{
-    a.add(b);
-    return a;
-}
-
-/// Sum of the sides of a box: unlike the volume it also grows for flat boxes.
-double size_of(const Aabb& box) noexcept
-{
-    double sum = 0.0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        sum += static_cast<double>(box.high[axis]) - static_cast<double>(box.low[axis]);
-    }
-    return sum;
-}
 
 } // namespace
 
@@ -171,46 +155,22 @@ void EditedSurface::flip_all(std::span<const FaceId> faces) noexcept
 /// Adds a box; if there are too many, the two whose union is smallest become one.
 void EditedSurface::add_box(const Aabb& box) noexcept
 {
-    for (const Aabb& known : boxes_)
-    {
-        if (union_of(known, box) == known)
-        {
-            return;
-        }
-    }
-    if (boxes_.try_push_back(box))
+    if (std::ranges::any_of(boxes_, [&](const Aabb& known) { return holds(known, box); }))
     {
         return;
     }
-    // The new box is one of the two, or takes the place of one of them.
-    Aabb* first = nullptr;
-    Aabb* second = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (Aabb& a : boxes_)
+    boxes_.push_back(box);
+    if (boxes_.size() <= kMaxRemovedBoxes)
     {
-        if (const double size = size_of(union_of(a, box)); size < least)
-        {
-            least = size;
-            first = &a;
-            second = nullptr;
-        }
-        for (Aabb* b = &a + 1; b < boxes_.end(); ++b)
-        {
-            if (const double size = size_of(union_of(a, *b)); size < least)
-            {
-                least = size;
-                first = &a;
-                second = b;
-            }
-        }
-    }
-    if (second == nullptr)
-    {
-        first->add(box);
         return;
     }
-    first->add(*second);
-    *second = box;
+    const auto [first, second] = smallest_union(boxes_.view());
+    boxes_[first].add(boxes_[second]);
+    const Aabb last = boxes_.pop_back();
+    if (second < boxes_.size())
+    {
+        boxes_[second] = last;
+    }
 }
 
 void EditedSurface::flip(FaceId face) noexcept

@@ -88,8 +88,8 @@ private:
     /// One bit for each source face, set if it was removed, then one for each slot of an added
     /// face, set if there is none.
     std::span<std::uint64_t> removed_;
-    std::span<AddedFace> added_; ///< Added faces by slot.
-    StaticVector<Aabb, kMaxRemovedBoxes> boxes_;
+    std::span<AddedFace> added_;                     ///< Added faces by slot.
+    StaticVector<Aabb, kMaxRemovedBoxes + 1> boxes_; ///< One more only while two become one.
     std::uint32_t revision_{0};
     std::uint32_t added_count_{0};
     std::uint32_t added_max_{0};

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/awake_pairs.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/small_sort.hpp"
 
 #include <algorithm>
@@ -93,6 +94,8 @@ void AwakePairs::begin(const PairParts& parts) noexcept
     const auto at = std::ranges::find_if(awake_, [&parts](const Pair* pair)
                                          { return place_of(parts) < place_of(pair->parts()); }) -
                     awake_.begin();
+    // A tool has one pair with an object.
+    TACTUS_ASSERT(at == 0 || place_of(awake_.begin()[at - 1]->parts()) != place_of(parts));
     awake_.push_back(&pairs_[slot]);
     std::rotate(awake_.begin() + at, awake_.end() - 1, awake_.end());
     for (std::uint32_t i = parts.tool_index + 1; i < first_of_tool_.size(); ++i)
@@ -110,12 +113,14 @@ void AwakePairs::end(Pair& pair, ModelSet& models) noexcept
         models[parts.tool_model.id].refiner.release(pair.tool_closure());
     }
     const auto slot = static_cast<std::uint32_t>(&pair - pairs_.data());
+    TACTUS_ASSERT(slot < pairs_.size());
     free_.push_back(slot);
     if (pair.is_of_mesh())
     {
         take_back_front(pair);
     }
     auto* const at = std::ranges::find(awake_, &pair);
+    TACTUS_ASSERT(at != awake_.end());
     std::move(at + 1, awake_.end(), at);
     (void)awake_.pop_back();
     for (std::uint32_t i = pair.tool() + 1; i < first_of_tool_.size(); ++i)

@@ -57,7 +57,7 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
     changes_.make(input.changes, parts_, neighbours_, account_.scene);
     if (!input.edits.empty())
     {
-        edits_.make(input.edits, parts_, account_);
+        edits_.apply(input.edits, parts_, account_);
     }
     account_.faults |= parts_.tools.begin(input.tools, parts_.pairs, parts_.rules.period_ns);
     const bool is_same_scene = input.changes.empty() && input.edits.empty();
@@ -117,7 +117,7 @@ void Frame::place_pairs() noexcept
     {
         pair->place(account_.budgets);
     }
-    edits_.tell_pairs(parts_);
+    edits_.notify_pairs(parts_);
     parts_.pairs.order();
     const bool is_shed = shedding_.shed(parts_.pairs.by_priority());
     account_.faults |= is_shed ? FrameFault::pair_shed : FrameFault::none;

@@ -160,6 +160,8 @@ void MeshPair::note_use() noexcept
 /// Sets up the surfaces for this frame's searches, each with a whole allowance.
 void MeshPair::see_surfaces(const Budgets& budgets, WorkBudget& frame) noexcept
 {
+    TACTUS_ASSERT(tool_model_ != nullptr); // place() comes before move().
+    TACTUS_ASSERT(object_model_ != nullptr);
     const WalkBudget to_refine = budget_of(budgets, frame, kMeshRefineFactor, search_parts_);
     for (std::size_t i = 0; i < kPlaces; ++i)
     {
@@ -305,6 +307,7 @@ double MeshPair::touch_m(double radius_m, double reach_m) const noexcept
 
 ErrorCode MeshPair::tool_tolerance(ErrorCode tolerance) const noexcept
 {
+    TACTUS_ASSERT(object_model_ != nullptr);
     const double error_m = static_cast<double>(error_in_quanta(tolerance)) *
                            static_cast<double>(object_model_->header.quantum_m());
     const double quantum_m =
@@ -316,6 +319,7 @@ void MeshPair::query(const RegionOfInterest& region_of_interest, double certifie
                      double contact_m, std::uint32_t enough, ErrorCode tolerance, ContactEnds* ends,
                      DistanceAnswer& answer, ContactReport& contacts) noexcept
 {
+    TACTUS_ASSERT(enough > 0);
     const MeshQuestion question{tool_model_->tree,
                                 object_model_->tree,
                                 placements_[0],

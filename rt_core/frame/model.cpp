@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/model.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -96,6 +98,110 @@ std::uint32_t divide(std::uint32_t all, std::span<ModelCapacities> models,
     return all;
 }
 
+/// Plan of try_plan(): each model gets pages, then as many faces as fit beside them.
+class CapacityPlan
+{
+public:
+    /// Pages have their shares of `shared` bytes, `bytes` without the rooms for edits.
+    CapacityPlan(std::span<const ModelHeader> headers, std::size_t bytes, std::size_t shared,
+                 std::span<ModelCapacities> capacities) noexcept
+        : headers_(headers)
+        , bytes_(bytes)
+        , shared_(shared)
+        , capacities_(capacities)
+        , count_(static_cast<std::uint32_t>(headers.size()))
+        , least_more_((kMinFaces + count_ - 1) / count_)
+    {
+    }
+
+    void share_index_pages() noexcept
+    {
+        const auto most = static_cast<std::uint32_t>(std::max<std::size_t>(
+            kLeastResidentIndexPages, shared_ / kIndexPageShare / sizeof(IndexPage)));
+        static_cast<void>(divide(most, capacities_, &ModelCapacities::index_pages,
+                                 [this](std::size_t i)
+                                 { return std::max(headers_[i].counts().index_pages(), 1U); }));
+    }
+
+    /// Shares the pages of `cache_bytes`; 0: the default share, or less if that leaves too little
+    /// memory for faces. False if a model gets no page, or the least faces do not fit.
+    [[nodiscard]] bool try_share_pages(std::size_t cache_bytes) noexcept
+    {
+        const std::size_t page_bytes =
+            sizeof(Page) + LinkPool::bytes_per_page() + 2 * sizeof(IdTable::Entry);
+        const auto fitting = static_cast<std::uint32_t>(std::min<std::size_t>(
+            cache_bytes > 0 ? cache_bytes / sizeof(Page) : shared_ / 100 * kPageShare / page_bytes,
+            kMaxModels * std::size_t{kMaxRecords >> kRecordsPerChunkLog2}));
+        std::uint32_t pages = share_pages(fitting);
+        if (cache_bytes == 0 && !do_faces_fit(least_more_))
+        {
+            std::uint32_t too_many = pages;
+            pages = std::min(pages, count_);
+            while (too_many - pages > 1)
+            {
+                const std::uint32_t middle = pages + (too_many - pages) / 2;
+                static_cast<void>(share_pages(middle));
+                (do_faces_fit(least_more_) ? pages : too_many) = middle;
+            }
+            pages = share_pages(pages);
+        }
+        return pages >= count_ && do_faces_fit(least_more_);
+    }
+
+    /// Gives the models as many faces beyond their base meshes as fit.
+    [[nodiscard]] bool try_share_faces() noexcept
+    {
+        std::uint32_t fits = least_more_;
+        std::uint32_t too_many = 0;
+        for (const ModelHeader& header : headers_)
+        {
+            too_many =
+                std::max(too_many, std::max(header.counts().face_ids(), kMinFaces) + kMinFaces);
+        }
+        while (too_many - fits > 1)
+        {
+            const std::uint32_t middle = fits + (too_many - fits) / 2;
+            (do_faces_fit(middle) ? fits : too_many) = middle;
+        }
+        return do_faces_fit(fits);
+    }
+
+private:
+    /// Shares the pages, and returns how many of them the models can use.
+    std::uint32_t share_pages(std::uint32_t pages) noexcept
+    {
+        for (ModelCapacities& one : capacities_)
+        {
+            one.pages = 0;
+        }
+        return pages - divide(pages, capacities_, &ModelCapacities::pages,
+                              [this](std::size_t i)
+                              { return std::max(headers_[i].counts().chunks(), 1U); });
+    }
+
+    /// Plans `more` faces beyond each base mesh; true if all fits into the memory. Faces beyond the
+    /// whole model are useless; below the base mesh there is no model.
+    [[nodiscard]] bool do_faces_fit(std::uint32_t more) noexcept
+    {
+        std::uint64_t sum = 0;
+        for (std::size_t i = 0; i < count_; ++i)
+        {
+            const ModelCounts counts = headers_[i].counts();
+            const std::uint32_t most = std::max(counts.face_ids(), kMinFaces) + kMinFaces - 1;
+            capacities_[i] = with_faces(capacities_[i], counts.base_faces + std::min(more, most));
+            sum += capacities_[i].faces + capacities_[i].edit_faces;
+        }
+        return sum <= kMaxPoolFaces && required_bytes(headers_, capacities_) <= bytes_;
+    }
+
+    std::span<const ModelHeader> headers_;
+    std::size_t bytes_;
+    std::size_t shared_;
+    std::span<ModelCapacities> capacities_;
+    std::uint32_t count_;
+    std::uint32_t least_more_; ///< Least number of faces beyond each base mesh.
+};
+
 } // namespace
 
 ModelPools::ModelPools(Arena& arena, const ModelCapacities& all, std::uint32_t models) noexcept
@@ -162,13 +268,6 @@ ModelCapacities streamed_model_room(std::uint32_t meshes, std::uint32_t cells, s
 namespace
 {
 
-void keep_edit_faces(ModelCapacities& capacities) noexcept
-{
-    const std::uint32_t edit_faces = capacities.edit_faces;
-    capacities = {};
-    capacities.edit_faces = edit_faces;
-}
-
 /// Bytes of the rooms for edits: what models of base meshes need with them and not without.
 std::size_t edit_bytes(std::span<const ModelHeader> headers,
                        std::span<ModelCapacities> capacities) noexcept
@@ -196,81 +295,21 @@ bool try_plan(std::span<const ModelHeader> headers, std::size_t bytes, std::size
     TACTUS_ASSERT(headers.size() == capacities.size());
     TACTUS_ASSERT(!headers.empty());
     TACTUS_ASSERT(headers.size() <= kMaxModels);
-    const auto count = static_cast<std::uint32_t>(headers.size());
-    // Rooms for edits come first; the rest is shared by pages and faces as without them.
-    std::ranges::for_each(capacities, &keep_edit_faces);
+    // Rooms for edits come first; pages and faces share the rest as without them.
+    for (ModelCapacities& one : capacities)
+    {
+        const std::uint32_t edit_faces = one.edit_faces;
+        one = ModelCapacities{};
+        one.edit_faces = edit_faces;
+    }
     const std::size_t for_edits = edit_bytes(headers, capacities);
     if (for_edits >= bytes)
     {
         return false;
     }
-    const std::size_t shared = bytes - for_edits;
-    const auto chunks_of = [&](std::size_t i)
-    { return std::max(headers[i].counts().chunks(), 1U); };
-    const auto index_pages_of = [&](std::size_t i)
-    { return std::max(headers[i].counts().index_pages(), 1U); };
-    const auto index_pages_max = static_cast<std::uint32_t>(std::max<std::size_t>(
-        kLeastResidentIndexPages, shared / kIndexPageShare / sizeof(IndexPage)));
-    static_cast<void>(
-        divide(index_pages_max, capacities, &ModelCapacities::index_pages, index_pages_of));
-    const std::size_t page_bytes =
-        sizeof(Page) + LinkPool::bytes_per_page() + 2 * sizeof(IdTable::Entry);
-    const auto fitting = static_cast<std::uint32_t>(std::min<std::size_t>(
-        cache_bytes > 0 ? cache_bytes / sizeof(Page) : shared / 100 * kPageShare / page_bytes,
-        kMaxModels * std::size_t{kMaxRecords >> kRecordsPerChunkLog2}));
-    const auto share_pages = [&](std::uint32_t pages)
-    {
-        for (ModelCapacities& one : capacities)
-        {
-            one.pages = 0;
-        }
-        return pages - divide(pages, capacities, &ModelCapacities::pages, chunks_of);
-    };
-    // Faces beyond the whole model are useless; below the base mesh there is no model.
-    const auto plan_faces = [&](std::uint32_t more)
-    {
-        std::uint64_t sum = 0;
-        for (std::size_t i = 0; i < count; ++i)
-        {
-            const ModelCounts counts = headers[i].counts();
-            const std::uint32_t most = std::max(counts.face_ids(), kMinFaces) + kMinFaces - 1;
-            capacities[i] = with_faces(capacities[i], counts.base_faces + std::min(more, most));
-            sum += capacities[i].faces + capacities[i].edit_faces;
-        }
-        return sum <= kMaxPoolFaces && required_bytes(headers, capacities) <= bytes;
-    };
-    const std::uint32_t least_more = (kMinFaces + count - 1) / count;
-    std::uint32_t pages = share_pages(fitting);
-    // If the default number of pages leaves too little memory for faces, fewer pages are planned.
-    if (cache_bytes == 0 && !plan_faces(least_more))
-    {
-        std::uint32_t too_many = pages;
-        pages = std::min(pages, count);
-        while (too_many - pages > 1)
-        {
-            const std::uint32_t middle = pages + (too_many - pages) / 2;
-            static_cast<void>(share_pages(middle));
-            (plan_faces(least_more) ? pages : too_many) = middle;
-        }
-        pages = share_pages(pages);
-    }
-    if (pages < count || !plan_faces(least_more))
-    {
-        return false;
-    }
-    std::uint32_t fits = least_more;
-    std::uint32_t too_many = 0;
-    for (const ModelHeader& header : headers)
-    {
-        too_many = std::max(too_many, std::max(header.counts().face_ids(), kMinFaces) + kMinFaces);
-    }
-    while (too_many - fits > 1)
-    {
-        const std::uint32_t middle = fits + (too_many - fits) / 2;
-        (plan_faces(middle) ? fits : too_many) = middle;
-    }
-    static_cast<void>(plan_faces(fits));
-    return true;
+    CapacityPlan plan(headers, bytes, bytes - for_edits, capacities);
+    plan.share_index_pages();
+    return plan.try_share_pages(cache_bytes) && plan.try_share_faces();
 }
 
 Model::Model(Arena& arena, ModelPools& shared, ModelId id, const ModelHeader& model_header,
@@ -387,6 +426,8 @@ void Model::dissolve(std::uint32_t& leaving, std::uint32_t frame, WorkCounters& 
 /// Returns the model's reserved memory: the model is known again.
 void Model::end_stay() noexcept
 {
+    TACTUS_ASSERT(stage == ModelStage::wanted || stage == ModelStage::leaving);
+    TACTUS_ASSERT(forest.active_faces() == 0);
     forest.end_promise();
     tree.end_promise();
     shared_->base_room.give_back(first_cell_);
@@ -396,6 +437,7 @@ void Model::end_stay() noexcept
 
 double Model::horizon_s(std::int64_t period_ns) const noexcept
 {
+    TACTUS_ASSERT(period_ns > 0);
     const double latency_s = cache.latency().most_frames() * static_cast<double>(period_ns) * 1e-9;
     return std::min(latency_s + kRefineTime_s, kLongestHorizon_s);
 }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/model_life.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
 
 #include <algorithm>
@@ -72,6 +73,7 @@ void ModelLife::want(ModelSet& models, const Pair& pair, std::uint32_t frame, Tu
 /// checks one model.
 void ModelLife::let_go(ModelSet& models, std::uint32_t frame) const noexcept
 {
+    TACTUS_ASSERT(models.size() > 0);
     const ModelId turn{frame % models.size()};
     if (Model& model = models[turn]; model.is_streamed_model && model.is_resident() &&
                                      frame - models.slot(turn).paired_frame > linger_frames_)

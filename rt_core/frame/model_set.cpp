@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/model_set.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/frame/validate_model.hpp"
 
 #include <algorithm>
@@ -11,11 +12,14 @@ namespace tactus
 
 void ModelSet::add(std::uint32_t frame) noexcept
 {
+    TACTUS_ASSERT(count_ < slots_.size());
+    TACTUS_ASSERT(slots_[count_].model.has_value());
     wake({count_++}, frame);
 }
 
 void ModelSet::wake(ModelId id, std::uint32_t frame) noexcept
 {
+    TACTUS_ASSERT(id.value < count_);
     slots_[id.value].paired_frame = frame;
     keep_busy(id);
 }

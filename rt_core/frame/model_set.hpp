@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/model_id.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
@@ -47,6 +48,7 @@ public:
     /// later ones get the rest of the frame's budgets.
     [[nodiscard]] ModelId in_turn(std::uint32_t busy, std::uint32_t frame) const noexcept
     {
+        TACTUS_ASSERT(busy < busy_.size());
         return busy_[(frame + busy) % busy_.size()];
     }
     /// Keeps the model busy even without a pair.

@@ -111,10 +111,13 @@ PairMemory PairMemory::take(Arena& arena, std::span<const ToolSpec> tools,
 Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) noexcept
     : parts_(parts)
     , is_joined_(!parts.begins_apart)
-    , stood_(parts.object->pose)
-    , feel_(parts.object->spec.material)
+    , last_pose_(parts.object->pose)
+    , material_(parts.object->spec.material)
 {
+    TACTUS_ASSERT(parts.rules != nullptr);
+    TACTUS_ASSERT(parts.model.model != nullptr);
     const ToolSpec& tool = parts.tool->spec();
+    TACTUS_ASSERT(is_mesh(tool) == (parts.tool_model.model != nullptr));
     contacts_ = wants_contacts(tool) ? &memory.contacts[index] : nullptr;
     touches_ = Tool::is_held_as_rigid(tool) ? &memory.touches[index] : nullptr;
     mesh_ = is_mesh(tool) ? &memory.meshes[index] : nullptr;
@@ -126,12 +129,13 @@ Pair::Pair(const PairParts& parts, const PairMemory& memory, std::size_t index) 
 
 void Pair::place(const Budgets& budgets) noexcept
 {
+    TACTUS_ASSERT(parts_.rules->work != nullptr);
     const ToolPlacement& placement = parts_.tool->placement();
     is_model_here_ = parts_.model.model->is_resident();
-    feels_otherwise_ =
-        feel_.step(parts_.object->spec.material, parts_.tool->spec().stiffness_n_per_m,
-                   static_cast<double>(parts_.rules->period_ns) * 1e-9);
-    look();
+    has_material_changed_ =
+        material_.step(parts_.object->spec.material, parts_.tool->spec().stiffness_n_per_m,
+                       static_cast<double>(parts_.rules->period_ns) * 1e-9);
+    update_region();
     find_priority();
     if (mesh_ != nullptr && is_model_here_)
     {
@@ -141,7 +145,7 @@ void Pair::place(const Budgets& budgets) noexcept
     }
 }
 
-void Pair::look() noexcept
+void Pair::update_region() noexcept
 {
     region_of_interest_.look(parts_.tool->spec(), parts_.tool->placement(), parts_.object->pose);
     if (!parts_.rules->variant.lets_pairs_rest || tells_distance())
@@ -311,12 +315,12 @@ SurfaceTolerance::Range Pair::tolerance_range() const noexcept
     }
     const double surfaces = mesh_ != nullptr ? 2.0 : 1.0; // The errors of both meshes add up.
     const double stiffness =
-        std::min(parts_.tool->spec().stiffness_n_per_m, feel_.felt().stiffness_n_per_m);
-    const double unfelt_m = rules.force_tolerance_n / stiffness / parts_.object->pose.scale;
+        std::min(parts_.tool->spec().stiffness_n_per_m, material_.felt().stiffness_n_per_m);
+    const double imperceptible_m = rules.force_tolerance_n / stiffness / parts_.object->pose.scale;
     const double most_m = kMostTolerated * parts_.tool->radius_m() / parts_.object->pose.scale;
     const ErrorCode most = largest_code_within(most_m * quanta_of_m / surfaces);
     const ErrorCode least =
-        largest_code_within(std::min(kToleratedQuanta, unfelt_m * quanta_of_m / surfaces));
+        largest_code_within(std::min(kToleratedQuanta, imperceptible_m * quanta_of_m / surfaces));
     return {std::min(least, most), most};
 }
 
@@ -374,6 +378,7 @@ void Pair::ask_for_spheres() noexcept
         question.memory = memory++;
         ask(looks_ahead, model, looks_ahead ? ahead_of(question) : question, of_object_);
     }
+    TACTUS_ASSERT(memory <= &refine_memories_.back()); // A cover has at most kMaxCoverSpheres.
     for (const auto* const end = &refine_memories_.back(); memory != end; ++memory)
     {
         memory->is_known = false;
@@ -500,7 +505,7 @@ SurfaceRoom Pair::query(const SurfaceRoom& room, const Budgets& budgets, WorkCou
     const double rounding = rounding_m();
     lower_m_ = std::max(0.0, surface.answer.lower_m * pose.scale - rounding);
     upper_m_ = surface.answer.upper_m * pose.scale + rounding;
-    if (std::exchange(is_in_doubt_, false) && !(surface.answer.lower_m > 0.0))
+    if (std::exchange(may_be_entered_, false) && !(surface.answer.lower_m > 0.0))
     {
         is_joined_ = false;
     }
@@ -516,7 +521,7 @@ SurfaceRoom Pair::query_again(const SurfaceRoom& room, const Budgets& budgets, W
 {
     const ToolPlacement& placement = parts_.tool->placement();
     const ObjectPose& pose = parts_.object->pose;
-    look();
+    update_region();
     if (mesh_ != nullptr && is_model_here_)
     {
         mesh_->move(in_frame(pose, placement.place), budgets, *parts_.rules->work);
@@ -547,7 +552,7 @@ std::uint32_t Pair::revision() const noexcept
 /// become too old.
 bool Pair::is_unchanged() const noexcept
 {
-    return was_answered_ && !has_moved() && !feels_otherwise_ &&
+    return was_answered_ && !has_moved() && !has_material_changed_ &&
            parts_.object->pose.arrival_ns == 0 && answered_revision_ == revision();
 }
 
@@ -577,14 +582,15 @@ void Pair::forget_refinement() noexcept
     }
 }
 
-void Pair::doubt() noexcept
+void Pair::invalidate() noexcept
 {
-    region_of_interest_.doubt();
+    region_of_interest_.invalidate();
     forget_refinement();
 }
 
-void Pair::follow(const SurfaceEdit& edit) noexcept
+void Pair::ignore_if_entered(const SurfaceEdit& edit) noexcept
 {
+    TACTUS_ASSERT(edit.model == model());
     const Tool& tool = *parts_.tool;
     if (!is_joined_ || !tool.is_held())
     {
@@ -607,9 +613,9 @@ void Pair::follow(const SurfaceEdit& edit) noexcept
     if (mesh_ != nullptr)
     {
         // Its query tells whether it meets the surface.
-        is_in_doubt_ = is_in_doubt_ ||
-                       std::ranges::any_of(edit.added, [&](const AddedFace& added)
-                                           { return may_enter(to_triangle(added.corners_m)); });
+        may_be_entered_ = may_be_entered_ ||
+                          std::ranges::any_of(edit.added, [&](const AddedFace& added)
+                                              { return may_enter(to_triangle(added.corners_m)); });
     }
     else
     {
@@ -737,6 +743,7 @@ void Pair::narrow(DistanceAnswer& answer) const noexcept
 
 void Pair::query_mesh(WorkCounters& work, FrameFault& faults) noexcept
 {
+    TACTUS_ASSERT(contacts_ != nullptr); // Each mesh has a report.
     const ToolSpec& tool = parts_.tool->spec();
     const ObjectPose& pose = parts_.object->pose;
     DistanceAnswer& answer = surface_.answer;
@@ -822,7 +829,7 @@ PlacedSurface Pair::placed() noexcept
     const ObjectPose& pose = parts_.object->pose;
     return {.pose = &pose,
             .surface = &surface_,
-            .material = &feel_.felt(),
+            .material = &material_.felt(),
             .quantum_m = quantum_m,
             .reach_m = region_of_interest_.reach_m() * pose.scale,
             .lower_m = lower_m_,
@@ -859,7 +866,7 @@ PairOutput Pair::output() const noexcept
             .nearest_feature = answer.nearest_feature,
             .is_shed = is_shed_,
             .is_joined = is_joined_,
-            .damping_n_s_per_m = feel_.felt().damping_n_s_per_m,
+            .damping_n_s_per_m = material_.felt().damping_n_s_per_m,
             .contacts = parts_.tool->spec().wants_contacts ? contacts_ : nullptr,
             .mesh = mesh_ == nullptr ? nullptr : &mesh_->report()};
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/force/material_blend.hpp"
 #include "rt_core/frame/mesh_pair.hpp"
@@ -68,6 +69,7 @@ struct SurfaceRoom
     /// Empty surface with as much of the memory as one surface may use.
     [[nodiscard]] LocalSurface surface() const noexcept
     {
+        TACTUS_ASSERT(triangles.size() == distances_m.size());
         LocalSurface surface;
         const std::size_t most = std::min<std::size_t>(triangles.size(), kMaxLocalTriangles);
         surface.triangles = triangles.first(most);
@@ -76,6 +78,7 @@ struct SurfaceRoom
     }
     [[nodiscard]] SurfaceRoom after(std::uint32_t count) const noexcept
     {
+        TACTUS_ASSERT(count <= triangles.size());
         return {triangles.subspan(count), distances_m.subspan(count)};
     }
 };
@@ -182,9 +185,9 @@ public:
     /// and the model's box is out of the tool's reach.
     [[nodiscard]] bool can_spare_model() const noexcept TACTUS_NONBLOCKING;
     /// Ends the validity of what was known of the object's surface, which an edit has changed.
-    void doubt() noexcept TACTUS_NONBLOCKING;
+    void invalidate() noexcept TACTUS_NONBLOCKING;
     /// Makes a tool that an added face enters ignore the object until both are apart.
-    void follow(const SurfaceEdit& edit) noexcept TACTUS_NONBLOCKING;
+    void ignore_if_entered(const SurfaceEdit& edit) noexcept TACTUS_NONBLOCKING;
     /// Makes the pair answer from the model's box, since the model leaves. Closures must have been
     /// released.
     void lose_model() noexcept TACTUS_NONBLOCKING;
@@ -203,10 +206,10 @@ public:
     [[nodiscard]] NearObject near() noexcept
     {
         const ObjectPose& now = parts_.object->pose;
-        return {parts_.object_number, has_moved() ? &stood_ : &now, &now, &body_, lower_m_};
+        return {parts_.object_number, has_moved() ? &last_pose_ : &now, &now, &body_, lower_m_};
     }
     /// Clears the velocities of an object at rest.
-    void stand() noexcept
+    void clear_velocities() noexcept
     {
         body_.velocity_m_per_s = Vec3(0.0, 0.0, 0.0);
         body_.spin_rad_per_s = Vec3(0.0, 0.0, 0.0);
@@ -218,7 +221,7 @@ public:
     {
         if (has_moved())
         {
-            stood_ = parts_.object->pose;
+            last_pose_ = parts_.object->pose;
         }
     }
     /// Closures of the two models' questions, which must be released before the pair ends.
@@ -239,7 +242,7 @@ private:
 
     [[nodiscard]] std::uint32_t revision() const noexcept;
     void forget_refinement() noexcept;
-    void look() noexcept;
+    void update_region() noexcept;
     void find_priority() noexcept;
     [[nodiscard]] PairMotion motion() const noexcept;
     void fit_tolerance() noexcept;
@@ -293,12 +296,12 @@ private:
     Priority priority_;
     bool is_shed_{false};
     bool is_joined_{true};
-    bool is_in_doubt_{false};  ///< True if an added face may meet the mesh tool.
-    bool is_model_here_{true}; ///< True if the object's model is resident in this frame.
-    ObjectPose stood_;         ///< Pose of the object in the last frame.
+    bool may_be_entered_{false}; ///< True if an added face may meet the mesh tool.
+    bool is_model_here_{true};   ///< True if the object's model is resident in this frame.
+    ObjectPose last_pose_;       ///< Pose of the object in the last frame.
     ProxyMemory body_;
-    MaterialBlend feel_;
-    bool feels_otherwise_{false}; ///< True if the felt material differs from the last frame's.
+    MaterialBlend material_;
+    bool has_material_changed_{false}; ///< True if the felt material differs from the last frame's.
     SurfaceTolerance tolerance_;
     /// Capacity for the surface, as found in the last frame.
     SurfaceTolerance::Room room_{SurfaceTolerance::Room::fitting};

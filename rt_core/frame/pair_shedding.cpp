@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/pair_shedding.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -25,6 +27,7 @@ bool PairShedding::shed(std::span<Pair* const> order) noexcept
 
 void PairShedding::learn(std::uint32_t refused) noexcept
 {
+    TACTUS_ASSERT(refused <= kPriorityClasses);
     if (refused <= static_cast<std::uint32_t>(PriorityClass::soon))
     {
         const auto of = static_cast<PriorityClass>(refused);

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/refinement.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/small_sort.hpp"
 #include "rt_core/refine/split_shares.hpp"
 
@@ -128,6 +129,7 @@ void Refinement::group(ModelSet& models) noexcept
         models.slot(id).requests_end = before;
         before += models.slot(id).requests;
     }
+    TACTUS_ASSERT(before == requests_.size()); // Models with requests are busy.
     for (const RefineRequest& request : requests_)
     {
         by_model_[models.slot(request.model).requests_end++] = request;

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/scene_changes.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -27,6 +29,7 @@ SceneChanges::SceneChanges(Arena& arena, const FrameSetup& setup) noexcept
 void SceneChanges::place_first(const FrameSetup& setup, FrameParts& parts,
                                Neighbours& neighbours) noexcept
 {
+    TACTUS_ASSERT(parts.models.size() == setup.models.size());
     for (std::uint32_t i = 0; i < setup.objects.size(); ++i)
     {
         SceneChange change;

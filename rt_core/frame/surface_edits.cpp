@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/surface_edits.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -25,8 +27,8 @@ std::optional<EditRefusal> try_edit(const SurfaceEdit& edit, FrameParts& parts,
         {
             if (pair->model() == edit.model)
             {
-                pair->doubt();
-                parts.tools[pair->tool()].see_edit();
+                pair->invalidate();
+                parts.tools[pair->tool()].note_edit();
             }
         }
     }
@@ -35,9 +37,10 @@ std::optional<EditRefusal> try_edit(const SurfaceEdit& edit, FrameParts& parts,
 
 } // namespace
 
-void SurfaceEdits::make(std::span<const SurfaceEdit> edits, FrameParts& parts,
-                        FrameAccount& account) noexcept
+void SurfaceEdits::apply(std::span<const SurfaceEdit> edits, FrameParts& parts,
+                         FrameAccount& account) noexcept
 {
+    TACTUS_ASSERT(applied_.empty()); // notify_pairs() of the last frame has emptied it.
     const std::size_t taken = std::min<std::size_t>(edits.size(), kMaxEditsPerFrame);
     for (const SurfaceEdit& edit : edits.first(taken))
     {
@@ -47,26 +50,26 @@ void SurfaceEdits::make(std::span<const SurfaceEdit> edits, FrameParts& parts,
         }
         else
         {
-            made_.push_back(edit);
+            applied_.push_back(edit);
         }
     }
     account.scene.edits_refused[static_cast<std::size_t>(EditRefusal::too_many)] +=
         static_cast<std::uint32_t>(edits.size() - taken);
 }
 
-void SurfaceEdits::tell_pairs_of_edits(FrameParts& parts) noexcept
+void SurfaceEdits::notify_pairs_of_applied(FrameParts& parts) noexcept
 {
-    for (const SurfaceEdit& edit : made_)
+    for (const SurfaceEdit& edit : applied_)
     {
         for (Pair* pair : parts.pairs.all())
         {
             if (pair->model() == edit.model)
             {
-                pair->follow(edit);
+                pair->ignore_if_entered(edit);
             }
         }
     }
-    made_.clear();
+    applied_.clear();
 }
 
 } // namespace tactus

@@ -18,22 +18,23 @@ class SurfaceEdits
 public:
     /// Applies the edits in order, at most kMaxEditsPerFrame, and counts refused ones by their
     /// reasons. Pairs of the edited models forget the former surface. The spans stay valid until
-    /// tell_pairs().
-    void make(std::span<const SurfaceEdit> edits, FrameParts& parts,
-              FrameAccount& account) noexcept TACTUS_NONBLOCKING;
-    /// Lets the tools go that added faces entered, once the pairs are placed.
-    void tell_pairs(FrameParts& parts) noexcept TACTUS_NONBLOCKING
+    /// notify_pairs().
+    void apply(std::span<const SurfaceEdit> edits, FrameParts& parts,
+               FrameAccount& account) noexcept TACTUS_NONBLOCKING;
+    /// Makes tools that added faces entered ignore their objects, once the pairs are placed.
+    void notify_pairs(FrameParts& parts) noexcept TACTUS_NONBLOCKING
     {
-        if (!made_.empty())
+        if (!applied_.empty())
         {
-            tell_pairs_of_edits(parts);
+            notify_pairs_of_applied(parts);
         }
     }
 
 private:
-    void tell_pairs_of_edits(FrameParts& parts) noexcept TACTUS_NONBLOCKING;
+    void notify_pairs_of_applied(FrameParts& parts) noexcept TACTUS_NONBLOCKING;
 
-    StaticVector<SurfaceEdit, kMaxEditsPerFrame> made_; ///< Edits of this frame that were made.
+    /// Edits of this frame that were not refused.
+    StaticVector<SurfaceEdit, kMaxEditsPerFrame> applied_;
 };
 
 } // namespace tactus

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/tool.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/object_speed_limit.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
@@ -81,7 +82,9 @@ auto Tool::with(auto& any, const Function& function) noexcept
     {
         return function(*rigid);
     }
-    return function(*std::get_if<Follower>(&any));
+    auto* const follower = std::get_if<Follower>(&any);
+    TACTUS_ASSERT(follower != nullptr);
+    return function(*follower);
 }
 
 FrameFault Tool::begin(const ToolState& sample, double period_s,

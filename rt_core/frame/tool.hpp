@@ -48,7 +48,7 @@ public:
     void forget(const PlacedSurface& gone) noexcept TACTUS_NONBLOCKING;
     /// Notes an edit of a near surface; before begin(). If the tool touches nothing afterwards, it
     /// has lost its object.
-    void see_edit() noexcept { has_edit_ = true; }
+    void note_edit() noexcept { has_edit_ = true; }
     /// Checks the motion of an object that was not near; before begin(). `object` is its bounding
     /// sphere in its model's frame. If the object may have passed over the tool, the next output is
     /// over-constrained.

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/tool_set.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -43,6 +45,7 @@ ToolSet::ToolSet(Arena& arena, const FrameSetup& setup) noexcept
 
 void ToolSet::renew(std::uint32_t tool, bool is_resident) noexcept
 {
+    TACTUS_ASSERT(tool < tools_.size());
     status_[tool] = {is_resident};
     tools_[tool] = Tool(tools_[tool].spec(), planes_);
 }
@@ -64,7 +67,7 @@ FrameFault ToolSet::begin(std::span<const ToolState> samples, const AwakePairs& 
         {
             if (!pair->has_moved())
             {
-                pair->stand();
+                pair->clear_velocities();
             }
             else if (pair->is_joined())
             {

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/work_shares.hpp"
 
+#include "rt_core/base/assert.hpp"
+
 #include <algorithm>
 
 namespace tactus
@@ -38,6 +40,7 @@ void WorkShares::begin(std::uint32_t most, WorkBudget& work) noexcept
 
 void WorkShares::begin_loading() noexcept
 {
+    TACTUS_ASSERT(work_ != nullptr); // begin() comes first.
     work_->limit(part(kLoading));
 }
 
@@ -66,6 +69,7 @@ void WorkShares::begin_forces() noexcept
 
 void WorkShares::end() noexcept
 {
+    TACTUS_ASSERT(work_->used() >= before_answers_);
     answers_ = work_->used() - before_answers_;
 }
 

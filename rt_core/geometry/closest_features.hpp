@@ -16,6 +16,9 @@ namespace tactus
 // Nearest points of two features, in double for a filter, and in double-double for a decision.
 // Double-double is exact to about 1e-30 of the lengths, with the exceptions in each comment.
 
+/// Square of the sine of an angle, 1e-6 rad, up to which segments count as parallel.
+inline constexpr double kParallel = 1e-12;
+
 template <typename Real>
 [[nodiscard]] Real clamp_to_unit(const Real& value) noexcept
 {
@@ -30,7 +33,7 @@ struct SegmentsApproach
     Real first_parameter;
     Real second_parameter;
     Triple<Real> gap;
-    /// True if the segments are parallel within 1e-6: double may then be wrong about which features
+    /// True if the segments are parallel (kParallel): double may then be wrong about which features
     /// are nearest.
     bool is_parallel;
 };
@@ -58,7 +61,7 @@ template <typename Real>
     // The second pass is needed since t may have been clamped, or s undefined; it only brings the
     // points nearer.
     s = uu > zero ? clamp_to_unit((t * uv - dot(w, u)) / uu) : zero;
-    return {s, t, t * v - w - s * u, !(nn > Real{1e-12} * (uu * vv))};
+    return {s, t, t * v - w - s * u, !(nn > Real{kParallel} * (uu * vv))};
 }
 
 /// Vector from a point to its foot on a triangle's plane; none if the foot is not inside the

@@ -170,6 +170,9 @@ CornersAtCore::Row heights_along(const Vec3& axis, const std::array<CornerRow, 3
     return heights;
 }
 
+/// Error of the middle of two bounds, as a share of the upper one: two roundings.
+constexpr double kMiddleRounding = 2.5e-16;
+
 ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept
 {
     ClosestPoints result;
@@ -177,7 +180,7 @@ ClosestPoints to_closest_points(const GjkAnswer& answer) noexcept
     result.on_triangle = answer.on_triangle;
     result.gap = answer.gap;
     result.distance = 0.5 * (answer.lower + answer.upper);
-    result.distance_error = 0.5 * (answer.upper - answer.lower) + 2.5e-16 * answer.upper;
+    result.distance_error = 0.5 * (answer.upper - answer.lower) + kMiddleRounding * answer.upper;
     result.meet = answer.upper <= 2.0 * answer.rounding && !(answer.lower > 0.0);
     result.feature = answer.feature;
     return result;

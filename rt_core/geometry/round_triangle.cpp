@@ -13,12 +13,15 @@ namespace tactus
 namespace
 {
 
+/// Error of a distance by the subtraction of a radius, as a share of it: one rounding.
+constexpr double kRadiusRounding = 1.2e-16;
+
 ClosestPoints grown(const ClosestPoints& core, double radius) noexcept
 {
     TACTUS_ASSERT(radius >= 0.0);
     ClosestPoints result = core;
     result.distance = core.distance - radius;
-    result.distance_error = core.distance_error + 1.2e-16 * radius;
+    result.distance_error = core.distance_error + kRadiusRounding * radius;
     result.meet = result.distance <= 0.0;
     if (core.distance > 0.0)
     {

@@ -12,6 +12,7 @@ namespace tactus
 // Closed shapes for tests against triangles, in the triangle's frame and unit of length. Each may
 // be degenerate: a segment may be a point, a box a rectangle, and a radius zero.
 
+/// All points between two ends.
 struct Segment
 {
     Vec3 from{0.0, 0.0, 0.0};
@@ -34,12 +35,14 @@ struct Box
     Vec3 half{0.0, 0.0, 0.0}; ///< Half extents, not negative.
 };
 
+/// All points within a radius of a center.
 struct Sphere
 {
     Vec3 center{0.0, 0.0, 0.0};
     double radius{0.0}; ///< Not negative.
 };
 
+/// All points within the radius of a segment.
 struct Capsule
 {
     Segment core;

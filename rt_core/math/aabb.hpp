@@ -74,6 +74,14 @@ struct Aabb
     return true;
 }
 
+/// True if all of `inner` lies in `outer`.
+[[nodiscard]] constexpr bool holds(const Aabb& outer, const Aabb& inner) noexcept
+{
+    Aabb both = outer;
+    both.add(inner);
+    return both == outer;
+}
+
 /// True if the boxes have a point in common.
 [[nodiscard]] constexpr bool do_meet(const Aabb& a, const Aabb& b) noexcept
 {

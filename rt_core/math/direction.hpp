@@ -8,10 +8,14 @@
 namespace tactus
 {
 
+/// Largest coordinate of a vector, in its unit, up to which it counts as nearly zero. Quotients by
+/// larger ones stay in the range of doubles.
+inline constexpr double kNearlyZero = 1e-300;
+
 /// True if a vector has a direction: it is neither zero, nearly zero, infinite nor undefined.
 [[nodiscard]] inline bool has_direction(const Vec3& way) noexcept
 {
-    return way.allFinite() && largest_coordinate({&way, 1}) > 1e-300;
+    return way.allFinite() && largest_coordinate({&way, 1}) > kNearlyZero;
 }
 
 /// The vector scaled to length 1 within a few roundings, however long it is; it must have a

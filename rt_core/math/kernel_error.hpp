@@ -14,6 +14,10 @@ namespace tactus
 /// that.
 inline constexpr double kLargestAspect = 8.0;
 
+/// Shares of the local length in the error law: for any triangle, and for each unit of aspect.
+inline constexpr double kErrorShare = 4e-16;
+inline constexpr double kErrorSharePerAspect = 1e-16;
+
 /// The error law: a computed distance differs from the true one by at most this. `length` is the
 /// local length: the longest of the triangle's edges and of the distances between its corners and
 /// the other shape's. Lower bounds are lowered and upper bounds raised by it.
@@ -23,7 +27,7 @@ inline constexpr double kLargestAspect = 8.0;
 [[nodiscard]] constexpr double kernel_error(double aspect, double length) noexcept
 {
     TACTUS_ASSERT(length >= 0.0);
-    return (4e-16 + 1e-16 * std::min(aspect, kLargestAspect)) * length;
+    return (kErrorShare + kErrorSharePerAspect * std::min(aspect, kLargestAspect)) * length;
 }
 
 } // namespace tactus

@@ -180,7 +180,7 @@ void MeshFindings::add_apart(const MeetingFaces& faces, const Triangle& triangle
             std::min(exact_lower_m_, std::max(0.0, closest.distance - closest.distance_error));
         take_upper(upper_m);
     }
-    if (aim_ == Aim::all && !expects_crowd_ && closest.distance <= question_.contact_m)
+    if (aim_ == Aim::all && !expects_exceeded_capacity_ && closest.distance <= question_.contact_m)
     {
         keep_contact(faces, triangle, closest);
     }
@@ -337,7 +337,7 @@ bool MeshFindings::needs_only_meeting() const noexcept
 /// Distance beyond which no contact is kept; negative if no contact is.
 double MeshFindings::kept_contact_m() const noexcept
 {
-    if (aim_ != Aim::all || expects_crowd_)
+    if (aim_ != Aim::all || expects_exceeded_capacity_)
     {
         return -1.0;
     }

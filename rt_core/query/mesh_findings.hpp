@@ -53,7 +53,7 @@ public:
                  MeshReport& report, ContactReport* contacts) noexcept TACTUS_NONBLOCKING;
 
     /// Skips contacts between separate faces: valid only if exceeds_capacity() is true in the end.
-    void expect_crowd() noexcept { expects_crowd_ = true; }
+    void expect_exceeded_capacity() noexcept { expects_exceeded_capacity_ = true; }
     /// Sets the share of the distance, above 0, that is to be proven if nothing is in reach.
     void prove(double share) noexcept { share_ = share; }
     /// Leaves open faces out: they count as `certified_m` of the question away.
@@ -168,7 +168,7 @@ private:
     MeetingFaces nearest_faces_;
     bool has_nearest_{false};
     bool has_dropped_{false}; ///< True if a contact did not fit.
-    bool expects_crowd_{false};
+    bool expects_exceeded_capacity_{false};
     /// Share of the distance to prove if nothing is in reach.
     double share_{static_cast<double>(kProofShare)};
     double expected_m_{kInfinity}; ///< Limit set by expect_contacts().

@@ -495,7 +495,7 @@ struct Guess
                       &answers.contacts);
     if (guess.exceeds_capacity)
     {
-        search.findings().expect_crowd();
+        search.findings().expect_exceeded_capacity();
     }
     search.findings().expect_contacts(guess.contacts_within_m);
     search.findings().prove(memory.share);

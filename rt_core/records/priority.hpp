@@ -22,6 +22,7 @@ enum class PriorityClass : std::uint8_t
 inline constexpr std::uint32_t kPriorityClasses = 4;
 static_assert(static_cast<std::uint32_t>(PriorityClass::last) + 1 == kPriorityClasses);
 
+/// Priority of a pair: its class, then tools with a force, then the time to contact.
 struct Priority
 {
     /// Time limit of PriorityClass::soon: a contact takes ten frames of splits and one or two

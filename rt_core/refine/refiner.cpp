@@ -554,15 +554,8 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
                             const VertexForest::StarGeometry& star,
                             std::span<const RefineQuestion> own, std::uint32_t splits_left) noexcept
 {
-    LooseFaces coarse{star.geometry};
-    for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
-    {
-        coarse.errors_m[place] =
-            static_cast<double>(error_in_quanta(record.error[place])) * quantum_m_;
-        coarse.lanes |= record.error[place] != 0 ? 1U << place : 0U;
-    }
     const std::uint32_t outdated = outdated_in(star);
-    coarse.lanes = (coarse.lanes | outdated) & star.geometry.faces;
+    LooseFaces coarse = coarse_in(record, star, outdated);
     if (coarse.lanes == 0)
     {
         return;
@@ -623,6 +616,21 @@ void Refiner::consider_star(RecordId id, const VsplitRecord& record,
             push({excess[place], star.prims[place], FaceState::after(id, place)}, own);
         }
     }
+}
+
+/// Coarse faces of a star, and those of the places in `outdated`.
+LooseFaces Refiner::coarse_in(const VsplitRecord& record, const VertexForest::StarGeometry& star,
+                              std::uint32_t outdated) const noexcept
+{
+    LooseFaces coarse{star.geometry};
+    for (std::uint32_t place = 0; place < kMaxStarFaces; ++place)
+    {
+        coarse.errors_m[place] =
+            static_cast<double>(error_in_quanta(record.error[place])) * quantum_m_;
+        coarse.lanes |= record.error[place] != 0 ? 1U << place : 0U;
+    }
+    coarse.lanes = (coarse.lanes | outdated) & star.geometry.faces;
+    return coarse;
 }
 
 /// Places of a star's outdated faces, one bit each.

@@ -131,6 +131,9 @@ private:
                        const VertexForest::StarGeometry& star, std::span<const RefineQuestion> own,
                        std::uint32_t splits_left) noexcept;
     using StarBounds = std::array<double, kMaxStarFaces>;
+    [[nodiscard]] LooseFaces coarse_in(const VsplitRecord& record,
+                                       const VertexForest::StarGeometry& star,
+                                       std::uint32_t outdated) const noexcept;
     [[nodiscard]] std::uint32_t outdated_in(const VertexForest::StarGeometry& star) const noexcept;
     void bound_star_near_sphere(const RefineQuestion& question, const LooseFaces& coarse,
                                 StarBounds& lower_m) const noexcept;

@@ -39,7 +39,7 @@ void RegionOfInterest::remember(const DistanceAnswer& answer) noexcept
     known_core_ = core_;
     motion_m_ = 0.0;
     has_known_ = true;
-    is_doubted_ = false;
+    is_outdated_ = false;
 }
 
 bool RegionOfInterest::looks_ahead() const noexcept

@@ -40,11 +40,11 @@ public:
     /// Keeps a query's answer, which holds for the present place.
     void remember(const DistanceAnswer& answer) noexcept TACTUS_NONBLOCKING;
 
-    /// Ends the validity of the last answer, since the surface is another one. It still tells where
-    /// to look. Wakes the pair.
-    void doubt() noexcept
+    /// Ends the validity of the last answer, since the surface has changed. It still shows where
+    /// the surface was. Wakes the pair.
+    void invalidate() noexcept
     {
-        is_doubted_ = true;
+        is_outdated_ = true;
         is_asleep_ = false;
     }
 
@@ -64,7 +64,7 @@ public:
 
     [[nodiscard]] bool has_known() const noexcept { return has_known_; }
     /// True if the last answer bounds the distance at the present place.
-    [[nodiscard]] bool has_bounds() const noexcept { return has_known_ && !is_doubted_; }
+    [[nodiscard]] bool has_bounds() const noexcept { return has_known_ && !is_outdated_; }
     /// The last answer, for the tool's place at that time.
     [[nodiscard]] const DistanceAnswer& known() const noexcept { return known_; }
     /// Bounds for the present place from the last answer and the motion since.
@@ -77,9 +77,9 @@ private:
     Vec3 approach_m_{0.0, 0.0, 0.0};
     bool is_asleep_{false};
     bool has_known_{false};
-    bool is_doubted_{false}; ///< True if the surface has changed since the last answer.
-    PlacedCore known_core_;  ///< Core for which `known_` was answered.
-    double motion_m_{0.0};   ///< Motion of the core since then.
+    bool is_outdated_{false}; ///< True if the surface has changed since the last answer.
+    PlacedCore known_core_;   ///< Core for which `known_` was answered.
+    double motion_m_{0.0};    ///< Motion of the core since then.
     DistanceAnswer known_;
 };
 

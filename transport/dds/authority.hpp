@@ -31,6 +31,7 @@ inline constexpr std::size_t kServerNewsKinds = 6;
 /// Names in the order of ServerNews, as in the report.
 [[nodiscard]] const std::array<const char*, kServerNewsKinds>& server_news_names() noexcept;
 
+/// A change of the server that a controller follows.
 struct ServerEvent
 {
     std::chrono::steady_clock::time_point time{};

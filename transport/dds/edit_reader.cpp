@@ -164,7 +164,8 @@ void EditReader::take(std::uint64_t server_epoch, const Endpoint& endpoint)
         });
 }
 
-/// Keeps one sample; returns a reason if it is refused.
+/// Keeps one sample; returns a reason if it is refused. make_reader() has checked its numbers
+/// against each other, so at most one edit is kept for each part.
 std::optional<std::string> EditReader::take(Feed& feed, const tactus_v5_Edits& sample)
 {
     const bool is_sum = sample.index >= kKeptEdits;

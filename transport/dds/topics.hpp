@@ -53,8 +53,8 @@ enum class Topic : std::uint8_t
 [[nodiscard]] Result<Endpoint, Refusal> make_writer(const Domain& domain, Topic topic,
                                                     const std::string& partition);
 /// Creates a reader with the topic's quality of service. It drops samples with the identity of
-/// another server or controller than their writer's, and those with impossible numbers of objects
-/// or models. `domain` must outlive the reader.
+/// another server or controller than their writer's, and those with impossible numbers of objects,
+/// models or parts of an edit. `domain` must outlive the reader.
 [[nodiscard]] Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
                                                     const std::string& partition);
 

@@ -10,6 +10,7 @@
 namespace tactus::detail
 {
 
+/// Edges and vertices that a split into manifold pieces changed.
 struct ManifoldSplit
 {
     std::size_t cut_edges{0};

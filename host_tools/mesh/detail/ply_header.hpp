@@ -37,6 +37,7 @@ enum class PlyType
 [[nodiscard]] std::size_t size_of(PlyType type);
 [[nodiscard]] bool is_whole(PlyType type);
 
+/// A value, or a list of values, of each entry of an element.
 struct PlyProperty
 {
     std::string name;
@@ -44,6 +45,7 @@ struct PlyProperty
     std::optional<PlyType> count_type; ///< Type of the count; present for a list.
 };
 
+/// A table of the file, such as its vertices.
 struct PlyElement
 {
     std::string name;
@@ -51,6 +53,7 @@ struct PlyElement
     std::vector<PlyProperty> properties;
 };
 
+/// Layout of the data behind the header.
 struct PlyHeader
 {
     PlyFormat format{};

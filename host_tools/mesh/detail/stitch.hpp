@@ -9,6 +9,7 @@
 namespace tactus::detail
 {
 
+/// Border vertices that stitching moved.
 struct JoinedBorders
 {
     bool are_there{false};   ///< True if the mesh has borders.

@@ -9,6 +9,7 @@
 namespace tactus::detail
 {
 
+/// Numbers of pieces whose faces were reversed.
 struct TurnedPieces
 {
     std::size_t outward{0}; ///< Pieces that were inside out.

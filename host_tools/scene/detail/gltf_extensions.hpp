@@ -21,6 +21,7 @@ enum class ExtensionUse
     vital, ///< Ignored with a note, but a file that requires it is refused.
 };
 
+/// A glTF extension, and how much of it is read.
 struct KnownExtension
 {
     std::string_view name; ///< Name; if it ends in '_', the prefix of several names.

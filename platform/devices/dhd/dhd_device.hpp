@@ -17,6 +17,7 @@
 namespace tactus
 {
 
+/// Choice and description of a device of the DHD library.
 struct DhdDeviceOptions
 {
     static constexpr int kIndexMax = 63;

@@ -25,6 +25,7 @@ struct OperatorLimb
     double grip_damping_n_s_per_m{4.0};
 };
 
+/// A simulated device, the operator who holds it, and where both start.
 struct OperatorAndDeviceOptions
 {
     DeviceLimits device;

@@ -8,6 +8,7 @@
 namespace tactus
 {
 
+/// The rotational part of a simulated device and operator.
 struct OperatorRotationOptions
 {
     RotationLimits device; ///< Rotation limits; inertia above zero.

@@ -16,6 +16,7 @@
 namespace tactus
 {
 
+/// Readings to replay, and what the device reports about itself.
 struct ReplayDeviceOptions
 {
     /// Recorded readings, at least one; `frame` is renumbered.

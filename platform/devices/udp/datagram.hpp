@@ -53,6 +53,7 @@ struct DescribeDatagram
     Tag tag{};
 };
 
+/// Reading of a device.
 struct SampleDatagram
 {
     Address address;
@@ -69,6 +70,7 @@ struct SampleDatagram
     Tag tag{};
 };
 
+/// Force and torque for a device.
 struct ForceDatagram
 {
     Address address;

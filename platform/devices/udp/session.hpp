@@ -32,9 +32,11 @@ struct Peer
     std::uint16_t version{kVersion}; ///< Version of its description, used in all replies.
 };
 
+/// An accepted description.
 struct Described
 {
 };
+/// An accepted reading.
 struct Sampled
 {
     DeviceReading reading;

@@ -20,6 +20,7 @@
 namespace tactus
 {
 
+/// Address, times and key for a device that sends datagrams.
 struct UdpDeviceOptions
 {
     static constexpr int kPortDefault = 48'500;

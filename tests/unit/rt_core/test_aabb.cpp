@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/math/aabb.hpp"
+#include "rt_core/math/smallest_union.hpp"
 #include "rt_core/spm/error_code.hpp"
 #include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace tactus::test
 {
@@ -78,6 +81,35 @@ TEST(Aabb, holds_exactly_the_extremes_of_its_points)
         first_half.add(second_half);
         ASSERT_EQ(first_half, sut);
     }
+}
+
+TEST(Aabb, holds_boxes_up_to_its_sides_and_none_beyond)
+{
+    const Aabb sut{{0.0F, 0.0F, 0.0F}, {2.0F, 2.0F, 2.0F}};
+    EXPECT_TRUE(holds(sut, sut));
+    EXPECT_TRUE(holds(sut, Aabb{}));
+    EXPECT_TRUE(holds(sut, {{0.0F, 1.0F, 0.0F}, {2.0F, 1.0F, 2.0F}}));
+    EXPECT_FALSE(holds(sut, {{0.0F, 1.0F, 0.0F}, {2.0F, 1.0F, std::nextafter(2.0F, 3.0F)}}));
+    EXPECT_FALSE(holds(sut, {{std::nextafter(0.0F, -1.0F), 1.0F, 0.0F}, {2.0F, 1.0F, 2.0F}}));
+}
+
+TEST(Aabb, the_smallest_union_is_that_of_the_nearest_boxes_flat_or_not)
+{
+    const auto cube_at = [](float x) { return Aabb{{x, 0.0F, 0.0F}, {x + 1.0F, 1.0F, 1.0F}}; };
+    using Pair = std::pair<std::size_t, std::size_t>;
+    EXPECT_EQ(smallest_union(std::array{cube_at(0.0F), cube_at(9.0F)}), Pair(0, 1));
+    EXPECT_EQ(smallest_union(std::array{cube_at(0.0F), cube_at(9.0F), cube_at(5.0F)}), Pair(1, 2));
+    EXPECT_EQ(smallest_union(std::array{cube_at(8.0F), cube_at(0.0F), cube_at(9.0F)}), Pair(0, 2));
+    // Flat boxes: all unions have the volume zero.
+    const auto point_at = [](float x) { return Aabb{{x, x, 0.0F}, {x, x, 0.0F}}; };
+    EXPECT_EQ(smallest_union(std::array{point_at(0.0F), point_at(4.0F), point_at(7.0F)}),
+              Pair(1, 2));
+    // Equal unions: the first pair.
+    EXPECT_EQ(smallest_union(std::array{point_at(0.0F), point_at(3.0F), point_at(6.0F)}),
+              Pair(0, 1));
+    EXPECT_EQ(smallest_union(std::array{Aabb{{-Aabb::kHuge, 0.0F, 0.0F}, {Aabb::kHuge, 1.0F, 1.0F}},
+                                        cube_at(0.0F), cube_at(1.0F)}),
+              Pair(1, 2));
 }
 
 /// Random numbers, and grid coordinates with a model's errors: codes up to 141 hold 2^27 quanta,
