@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/spm_publish/edited_models.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/unit/world/world_rig.hpp"
+#include "transport/dds/dds_server.hpp"
 #include "transport/store/model_store.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 /// Worlds whose models change while they are touched.
 namespace tactus::test
@@ -24,6 +29,9 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t kRoom = 4'096;
 constexpr double kWidth_m = 0.04; ///< Width of the hole below the hand.
 constexpr double kDepth_m = 0.01;
+constexpr double kLeft_m = 0.001; ///< Depth of the hole when it was filled.
+/// Domain of no other test.
+constexpr std::uint32_t kServedDomain = 208;
 /// Some steps of the model's grid.
 constexpr double kNear_m = 1e-5;
 
@@ -37,6 +45,13 @@ WorldTool cutter()
 Result<double, Refusal> carve_hole(const WorldObject& object)
 {
     return object.carve(cutter(), above(0.02), above(-0.5 * kDepth_m).position_m);
+}
+
+/// Fills the hole but for kLeft_m below the upper face, which is that of the model's box.
+Result<double, Refusal> fill_hole(const WorldObject& object)
+{
+    const HandPose place = above(-kLeft_m - 0.5 * kDepth_m);
+    return object.fill(cutter(), place, place.position_m);
 }
 
 constexpr double kHole_m3 = kWidth_m * kWidth_m * kDepth_m;
@@ -90,11 +105,12 @@ TEST(WorldEdits, a_filled_hole_carries_again_and_corners_move)
     const Hand hand = world.add(sphere(kRadius_m));
     ASSERT_TRUE(hand.step(above(0.02)));
     ASSERT_TRUE(carve_hole(part));
-    const auto filled =
-        part.fill(cutter(), above(-0.5 * kDepth_m), above(-0.5 * kDepth_m).position_m);
+    const auto filled = fill_hole(part);
     ASSERT_TRUE(filled) << filled.error().text;
-    EXPECT_NEAR(filled.value(), kHole_m3, 1e-3 * kHole_m3);
-    EXPECT_NEAR(press(hand, kRadius_m - kPress_m).proxy_m[2], kTop_m + kRadius_m, kNear_m);
+    const double filled_m3 = kHole_m3 - kWidth_m * kWidth_m * kLeft_m;
+    EXPECT_NEAR(filled.value(), filled_m3, 1e-3 * filled_m3);
+    EXPECT_NEAR(press(hand, kRadius_m - kLeft_m - kPress_m).proxy_m[2],
+                kTop_m - kLeft_m + kRadius_m, kNear_m);
     const auto moved = part.displace({0.05, 0.05, 0.05}, 0.01, {-0.002, -0.002, -0.002});
     ASSERT_TRUE(moved) << moved.error().text;
     EXPECT_LT(moved.value(), 0.0);
@@ -139,7 +155,57 @@ TEST(WorldEdits, a_tool_with_the_law_of_the_burr_sinks_in)
         return kTop_m + kRadius_m - press(hand, kRadius_m - 0.004, 3'000).proxy_m[2];
     };
     EXPECT_NEAR(depth_with(""), 0.0, kNear_m);
-    EXPECT_GT(depth_with("carve:5000"), 0.0005);
+    EXPECT_GT(depth_with("carve:5000"), 0.0003);
+}
+
+TEST(WorldEdits, a_tool_carves_the_model_of_a_server)
+{
+    const TemporaryFolder folder("world-served");
+    const std::string path = (folder.path() / "cube.spm").string();
+    {
+        World local;
+        const WorldObject part = local.add(cube(), {.edit_faces = 1});
+        const Hand hand = local.add(sphere(kRadius_m));
+        ASSERT_TRUE(hand.step(above(0.02)));
+        ASSERT_TRUE(part.save(path));
+    }
+    std::vector<dds::PublishedModel> models;
+    models.push_back({"cube", std::move(ModelStore::open(path)).value(), kRoom});
+    auto server = dds::DdsServer::create(kServedDomain, std::move(models), {}, {},
+                                         dds::Party::server, {true, {}});
+    ASSERT_TRUE(server) << server.error().text;
+    auto edited = EditedModels::create(*server.value(), {});
+    ASSERT_TRUE(edited) << edited.error().text;
+    std::atomic<bool> is_ending{false};
+    std::thread serving(
+        [&]
+        {
+            while (!is_ending.load())
+            {
+                server.value()->wait(1ms);
+                server.value()->step();
+                edited.value().step();
+            }
+        });
+    {
+        World world({.domain = kServedDomain});
+        const WorldObject part = world.add(published("cube"));
+        const Hand hand = world.add(sphere(kRadius_m), by_program(), {.edit = "carve:5000"});
+        HandState state = press(hand, kRadius_m - 0.004);
+        EXPECT_TRUE(state.in_contact);
+        const auto depth_m = [&] { return kTop_m + kRadius_m - state.proxy_m[2]; };
+        for (int i = 0; i < 60'000 && depth_m() < 0.0003; ++i)
+        {
+            state = hand.step(above(kRadius_m - 0.004)).value();
+            std::this_thread::sleep_for(1ms);
+        }
+        EXPECT_GE(depth_m(), 0.0003);
+        EXPECT_EQ(line_of(carve_hole(part)),
+                  "carve(): 'cube' is of a server, which edits it; use the hand's edit");
+    }
+    is_ending.store(true);
+    serving.join();
+    EXPECT_GT(edited.value().revision(0), 0U);
 }
 
 TEST(WorldEdits, the_guarded_loop_takes_edits_of_other_threads)
@@ -252,9 +318,10 @@ TEST(WorldEdits, edits_that_no_frame_takes_are_refused_in_the_end)
     std::string line;
     for (int i = 0; i < 2'000 && line.empty(); ++i)
     {
-        line = line_of(carve_hole(part));
-        line +=
-            line_of(part.fill(cutter(), above(-0.5 * kDepth_m), above(-0.5 * kDepth_m).position_m));
+        // A corner of the cube, to and fro.
+        const double corner_m = i % 2 == 0 ? 0.05 : 0.048;
+        const double way_m = i % 2 == 0 ? -0.002 : 0.0019;
+        line = line_of(part.displace({corner_m, corner_m, corner_m}, 0.01, {way_m, way_m, way_m}));
     }
     EXPECT_NE(line.find("edits wait for frames; at most 1024 are allowed"), std::string::npos)
         << line;
