@@ -268,7 +268,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/host_tools/c/tactus.h
 tactus_component(tactus
     NEEDS core transport platform host c
     MODULES tactus_loop tactus_choices tactus_scene_keeper tactus_controller tactus_readers
-        tactus_scene tactus_build tactus_world tactus_c_world tactus_no_allocation_counter
+        tactus_scene tactus_build tactus_edit tactus_world tactus_c_world
+        tactus_no_allocation_counter
     LINK_PRIVATE fmt::fmt CycloneDDS::ddsc Threads::Threads
     PC_REQUIRES_PRIVATE fmt CycloneDDS
     PC_LIBS_PRIVATE -pthread

@@ -137,11 +137,11 @@ tactus_module(platform/diagnose/doctor platform/machine transport/base)
 # The readers of meshes and scenes of host_tools, which programs lend to the rest of platform.
 tactus_module(platform/readers platform/scene platform/choices platform/loop platform/machine
     platform/devices transport rt_core host_tools/mesh host_tools/scene)
-# The public class World: objects, hands and their loop for programs of others. It encodes meshes,
-# too.
+# The public class World: objects, hands and their loop for programs of others. It encodes meshes
+# and edits models, too.
 tactus_module(platform/world platform/readers platform/controller platform/scene platform/choices
     platform/loop platform/machine platform/devices platform/recording transport rt_core
-    host_tools/mesh host_tools/build)
+    host_tools/mesh host_tools/build host_tools/edit)
 # The program hrtc: main(), its commands, the replay of a recording.
 tactus_module(platform/hrtc rt_core transport platform)
 
@@ -160,8 +160,8 @@ tactus_module(host_tools/simplify ${host_layer} host_tools/mesh)
 tactus_module(host_tools/encode ${host_layer} host_tools/mesh host_tools/simplify)
 # A mesh in memory as a model's file, as spm_build and a World make it.
 tactus_module(host_tools/build ${host_layer} host_tools/mesh host_tools/simplify host_tools/encode)
-# A model's surface while it is edited: cut, filled and moved.
-tactus_module(host_tools/edit ${host_layer} host_tools/mesh host_tools/encode)
+# A model's surface while it is edited: cut, filled and moved, and saved.
+tactus_module(host_tools/edit ${host_layer} host_tools/mesh host_tools/encode host_tools/build)
 # Local servers of HTTP: metrics, and the streams of a viewer.
 tactus_module(host_tools/web ${host_layer})
 # The library for C and what calls C.

@@ -27,7 +27,7 @@ struct ServedModel
     std::vector<std::byte> base; ///< Coded base mesh; empty until it is fetched (base_fetch.hpp).
     std::unique_ptr<ChunkLink> link;
     std::uint64_t server_epoch{0}; ///< Epoch of the server that sent the header; 0: from a file.
-    std::uint32_t edit_room{0};    ///< The server's slots for faces that edits add; 0: no edits.
+    std::uint32_t edit_room{0};    ///< Slots for faces that edits add; 0: no edits.
 };
 
 /// Verifies the base mesh's hash against the header (SpmRefusal::wrong_checksum), then parses it

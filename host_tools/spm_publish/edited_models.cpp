@@ -2,9 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/edited_models.hpp"
 
-#include "host_tools/build/build_model.hpp"
-#include "host_tools/encode/decoded_model.hpp"
-
 #include <fmt/format.h>
 
 #include <utility>
@@ -12,73 +9,17 @@
 namespace tactus
 {
 
-namespace
-{
-
-Vec3 point_of(const std::array<double, 3>& place)
-{
-    return {place[0], place[1], place[2]};
-}
-
-Result<SurfaceChange, Refusal> changed(SurfaceEditor& editor, const EditRequest& request)
-{
-    const Sweep sweep = sweep_of(request);
-    switch (request.kind)
-    {
-    case EditKind::carve:
-        return editor.carve(sweep);
-    case EditKind::fill:
-        return editor.fill(sweep);
-    case EditKind::displace:
-        break;
-    }
-    return editor.displace(sweep.from_m, request.radius_m,
-                           request.amount_m * (sweep.rotation * Vec3(0.0, 0.0, 1.0)));
-}
-
-} // namespace
-
-Sweep sweep_of(const EditRequest& request)
-{
-    const auto& q = request.from.rotation;
-    Sweep sweep;
-    sweep.radius_m = request.from.scale * request.radius_m;
-    sweep.rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix();
-    sweep.from_m = point_of(request.from.translation_m);
-    sweep.to_m = point_of(request.to.translation_m);
-    for (const std::array<double, 3>& vertex : request.hull_m)
-    {
-        sweep.core_m.emplace_back(request.from.scale * point_of(vertex));
-    }
-    if (sweep.core_m.empty())
-    {
-        const Vec3 half_axis_m = request.from.scale * point_of(request.half_axis_m);
-        sweep.core_m = {half_axis_m};
-        if (!half_axis_m.isZero())
-        {
-            sweep.core_m.emplace_back(-half_axis_m);
-        }
-    }
-    return sweep;
-}
-
 Result<EditedModels, Refusal> EditedModels::create(dds::DdsServer& server, Log log)
 {
     EditedModels edited(server, std::move(log));
     for (const dds::ModelPieces& model : server.models())
     {
-        std::vector<std::string> damage;
-        const DecodedModel decoded = DecodedModel::decode(model.store(), damage);
-        if (!damage.empty())
+        auto surface = EditedModel::create(model.store(), model.model().edit_room);
+        if (!surface)
         {
-            return Refusal{damage.front()};
+            return Refusal{fmt::format("model '{}': {}", model.model().name, surface.error().text)};
         }
-        auto editor = SurfaceEditor::create(decoded, model.model().edit_room);
-        if (!editor)
-        {
-            return Refusal{fmt::format("model '{}': {}", model.model().name, editor.error().text)};
-        }
-        edited.models_.push_back({std::move(editor).value(), {}});
+        edited.models_.push_back({std::move(surface).value(), {}});
     }
     return edited;
 }
@@ -99,7 +40,7 @@ void EditedModels::step()
 void EditedModels::change(const EditRequest& request)
 {
     Edited& model = models_[request.model];
-    const auto change = changed(model.editor, request);
+    const auto change = model.surface.change(request);
     if (!change)
     {
         ++model.counts.refused;
@@ -120,25 +61,6 @@ void EditedModels::change(const EditRequest& request)
         // The editor and the publisher have the same rules, so this is a fault of the program.
         log_.write(refusal->text);
     }
-}
-
-Result<HeaderFields, Refusal> EditedModels::save(std::size_t model,
-                                                 const std::filesystem::path& path,
-                                                 std::vector<std::string>& notes) const
-{
-    const ModelStore& store = server_->models()[model].store();
-    const HeaderFields& fields = store.header().fields();
-    const SurfaceEditor& editor = models_[model].editor;
-    ModelOptions options;
-    options.base_faces = fields.base_faces;
-    options.keeps_winding = true;
-    options.revision = fields.revision + editor.revision();
-    // The same grid, so that vertices stay where they are.
-    GridChoice grid;
-    grid.place_m = fields.origin_m;
-    grid.quantum_max_m = static_cast<double>(store.header().quantum_m());
-    auto built = build_model(editor.surface(), store.path().string(), path, options, grid, notes);
-    return built ? Result<HeaderFields, Refusal>(built.value().fields) : built.error();
 }
 
 } // namespace tactus

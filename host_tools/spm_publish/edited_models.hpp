@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/edit/surface_editor.hpp"
+#include "host_tools/edit/edited_model.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/dds/dds_server.hpp"
@@ -17,9 +17,6 @@
 
 namespace tactus
 {
-
-/// Sweep of the tool of a request. The tool keeps the rotation of its first place.
-[[nodiscard]] Sweep sweep_of(const EditRequest& request);
 
 /// The surfaces of a server's models, changed by the requests of controllers in order of arrival.
 class EditedModels
@@ -46,18 +43,20 @@ public:
     /// Number of a model's last edit; 0: none.
     [[nodiscard]] std::uint32_t revision(std::size_t model) const
     {
-        return models_[model].editor.revision();
+        return models_[model].surface.editor().revision();
     }
     [[nodiscard]] std::uint32_t added_faces(std::size_t model) const
     {
-        return models_[model].editor.added_count();
+        return models_[model].surface.editor().added_count();
     }
 
-    /// Builds the model with its edits as one file, whose revision is that of the file served plus
-    /// the number of edits. The path gets the whole file or none. `notes` gets the builder's notes.
+    /// Saves a model as EditedModel::save() does.
     [[nodiscard]] Result<HeaderFields, Refusal> save(std::size_t model,
                                                      const std::filesystem::path& path,
-                                                     std::vector<std::string>& notes) const;
+                                                     std::vector<std::string>& notes) const
+    {
+        return models_[model].surface.save(path, notes);
+    }
 
     /// Greatest number of changes in a step().
     static constexpr std::size_t kChangesAtOnce = 4;
@@ -65,7 +64,7 @@ public:
 private:
     struct Edited
     {
-        SurfaceEditor editor;
+        EditedModel surface;
         Counts counts;
     };
 

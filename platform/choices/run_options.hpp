@@ -134,6 +134,8 @@ struct Options
     bool strict{false};  ///< A run with losses or without a result counts as a failure.
     std::string as_file; ///< All options in the form of a --config file.
     RtThreadOptions thread;
+    /// Room of each of the `models` of files for faces that edits add; too short: none.
+    std::vector<std::uint32_t> edit_rooms;
 
     /// Name of a tool's option for a refusal, with the tool's number if there are several.
     [[nodiscard]] std::string of_tool(std::string_view option, std::size_t tool) const

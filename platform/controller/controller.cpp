@@ -232,7 +232,7 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     std::vector<std::uint32_t> edit_faces;
     for (std::size_t i = 0; i < models_.size(); ++i)
     {
-        // A model of a file, or of a server without edits, gets none.
+        // A file without edits, or a model of a server without them, gets none.
         const std::uint32_t room = models_[i].edit_room;
         edit_faces.push_back(room > 0 ? options.edit_faces.value_or(room) : 0);
         capacities[i].edit_faces = edit_faces.back();

@@ -40,8 +40,8 @@ EditRequest request_of(const BurrCut& cut, const BurrShape& shape, const Vec3& o
     return request;
 }
 
-Result<std::unique_ptr<CutSender>, Refusal>
-CutSender::create(const dds::Domain& domain, const Controller& controller, const Options& options)
+Result<std::unique_ptr<CutSender>, Refusal> CutSender::create(const Controller& controller,
+                                                              const Options& options)
 {
     std::map<std::uint32_t, Burr> burrs;
     std::uint32_t cutting = 0;
@@ -62,14 +62,14 @@ CutSender::create(const dds::Domain& domain, const Controller& controller, const
         burrs.emplace(tool, Burr{BurrLaw(std::move(*shape), rate_m3_per_s)});
         cutting |= 1U << tool;
     }
-    return cutting == 0 ? nullptr
-                        : std::unique_ptr<CutSender>(
-                              new CutSender(domain, controller, std::move(burrs), cutting));
+    return cutting == 0
+               ? nullptr
+               : std::unique_ptr<CutSender>(new CutSender(controller, std::move(burrs), cutting));
 }
 
-CutSender::CutSender(const dds::Domain& domain, const Controller& controller,
-                     std::map<std::uint32_t, Burr> burrs, std::uint32_t cutting)
-    : burrs_(std::move(burrs)), tap_(cutting), writer_(domain)
+CutSender::CutSender(const Controller& controller, std::map<std::uint32_t, Burr> burrs,
+                     std::uint32_t cutting)
+    : burrs_(std::move(burrs)), tap_(cutting)
 {
     for (const ServedModel& model : controller.models())
     {
@@ -77,40 +77,25 @@ CutSender::CutSender(const dds::Domain& domain, const Controller& controller,
     }
 }
 
-void CutSender::step(const dds::EditReader& reader,
-                     const std::function<std::uint64_t(std::size_t model)>& server_of)
+void CutSender::step(const Edits& edits, const Send& send)
 {
     for (CutSample sample; tap_.try_take(sample);)
     {
         Burr& burr = burrs_.at(sample.tool);
-        const std::uint64_t edits = reader.counts(sample.model.value).edits;
-        if (edits != burr.edits)
+        const std::uint64_t count = edits(sample.model.value);
+        if (count != burr.edits)
         {
             burr.law.note_answer();
         }
         if (const auto cut = burr.law.add(sample))
         {
-            burr.edits = edits;
-            const bool is_sent =
-                try_send(*cut, burr.law.shape(), reader, server_of(cut->model.value));
+            burr.edits = count;
+            const std::size_t model = cut->model.value;
+            const bool is_sent = send(model, request_of(*cut, burr.law.shape(), origins_m_[model]));
             ++(is_sent ? counts_.sent : counts_.unsent);
             counts_.volume_m3 += is_sent ? cut->volume_m3 : 0.0;
         }
     }
-}
-
-bool CutSender::try_send(const BurrCut& cut, const BurrShape& shape, const dds::EditReader& reader,
-                         std::uint64_t server_epoch)
-{
-    const auto number = reader.number_of(cut.model.value);
-    if (!number || server_epoch == 0)
-    {
-        return false;
-    }
-    EditRequest request = request_of(cut, shape, origins_m_[cut.model.value]);
-    request.server_epoch = server_epoch;
-    request.model = *number;
-    return writer_.try_send(std::move(request));
 }
 
 } // namespace tactus::hrtc

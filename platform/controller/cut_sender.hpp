@@ -7,8 +7,6 @@
 #include "platform/loop/burr.hpp"
 #include "platform/loop/cut_tap.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/dds/domain.hpp"
-#include "transport/dds/edit_reader.hpp"
 #include "transport/edit_request.hpp"
 
 #include <cstddef>
@@ -21,7 +19,7 @@
 namespace tactus::hrtc
 {
 
-/// Request of a cut to the server of its model. `origin_m` is that of the model's header.
+/// Request of a cut for the owner of its model. `origin_m` is that of the model's header.
 [[nodiscard]] EditRequest request_of(const BurrCut& cut, const BurrShape& shape,
                                      const Vec3& origin_m);
 
@@ -29,27 +27,30 @@ namespace tactus::hrtc
 struct CutCounts
 {
     std::uint64_t sent{0};
-    std::uint64_t unsent{0};       ///< Cuts of models without edits, or that DDS did not take.
+    std::uint64_t unsent{0};       ///< Cuts of models without edits, or that were not taken.
     std::uint64_t samples_lost{0}; ///< CutTap::lost().
     double volume_m3{0.0};         ///< Greatest volume that the sent ones remove.
 };
 
-/// Sends edit requests where tools press on models. Transport thread.
+/// Makes edit requests where tools press on models, for a server or an editor of this process. One
+/// thread, not the haptic one.
 class CutSender
 {
 public:
-    /// Refused if a tool that is to carve has no volume. Null if no tool is to carve. `domain` and
-    /// `controller` must outlive the sender.
+    /// Number of edits that a model has got.
+    using Edits = std::function<std::uint64_t(std::size_t model)>;
+    /// Takes a request; false if it can't.
+    using Send = std::function<bool(std::size_t model, EditRequest request)>;
+
+    /// Refused if a tool that is to carve has no volume. Null if no tool is to carve.
     [[nodiscard]] static Result<std::unique_ptr<CutSender>, Refusal>
-    create(const dds::Domain& domain, const Controller& controller, const Options& options);
+    create(const Controller& controller, const Options& options);
 
     /// Tap for the haptic thread, which must not outlive the sender.
     [[nodiscard]] CutTap& tap() noexcept { return tap_; }
 
-    /// Takes the samples, and sends the cuts that are due. `server_of` gives the epoch of a model's
-    /// server, 0 if there is none.
-    void step(const dds::EditReader& reader,
-              const std::function<std::uint64_t(std::size_t model)>& server_of);
+    /// Takes the samples, and sends the cuts that are due.
+    void step(const Edits& edits, const Send& send);
 
     [[nodiscard]] CutCounts counts() const
     {
@@ -65,16 +66,12 @@ private:
         std::uint64_t edits{0}; ///< Edits of the model before the last cut.
     };
 
-    CutSender(const dds::Domain& domain, const Controller& controller,
-              std::map<std::uint32_t, Burr> burrs, std::uint32_t cutting);
-
-    [[nodiscard]] bool try_send(const BurrCut& cut, const BurrShape& shape,
-                                const dds::EditReader& reader, std::uint64_t server_epoch);
+    CutSender(const Controller& controller, std::map<std::uint32_t, Burr> burrs,
+              std::uint32_t cutting);
 
     std::vector<Vec3> origins_m_;         ///< ModelHeader::origin_m() of each model.
     std::map<std::uint32_t, Burr> burrs_; ///< Burrs by the numbers of their tools.
     CutTap tap_;
-    dds::EditWriter writer_;
     CutCounts counts_;
 };
 

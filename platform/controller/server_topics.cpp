@@ -15,7 +15,7 @@ namespace tactus::hrtc
 namespace
 {
 
-/// Reader of the edits of the models with a room for them; null without any.
+/// Reader of the edits of the servers' models with a room for them; null without any.
 std::unique_ptr<dds::EditReader> edit_reader(const dds::DdsClient& client,
                                              const Controller& controller, Log log)
 {
@@ -23,8 +23,9 @@ std::unique_ptr<dds::EditReader> edit_reader(const dds::DdsClient& client,
     for (std::size_t i = 0; i < controller.models().size(); ++i)
     {
         const ServedModel& model = controller.models()[i];
+        const bool is_served = model.server_epoch != 0;
         models.push_back({model.name, model.hash, ModelHeader::parse(model.header).value(),
-                          controller.setup().models[i].capacities.edit_faces});
+                          is_served ? controller.setup().models[i].capacities.edit_faces : 0});
     }
     const bool has_room =
         std::ranges::any_of(models, [](const auto& model) { return model.room > 0; });
@@ -76,6 +77,7 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
     , controller_(controller)
     , authorities_(authorities)
     , keeper_(std::move(keeper))
+    , requests_(client.domain())
     , seen_(controller.models().size())
 {
     for (const ServedModel& model : controller.models())
@@ -142,7 +144,9 @@ void ServerTopics::step(MonotonicTime now)
     }
     if (cuts_ != nullptr)
     {
-        cuts_->step(*edits_, [this](std::size_t model) { return server_of(model); });
+        cuts_->step([this](std::size_t model) { return edits_->counts(model).edits; },
+                    [this](std::size_t model, EditRequest request)
+                    { return try_request(model, std::move(request)); });
     }
     if (now - last_sent_ >= kTelemetryPeriod)
     {
@@ -226,6 +230,15 @@ void ServerTopics::pass_edits()
             edit = edits_->next(i);
         }
     }
+}
+
+/// Sends a request to the model's server; false if the model takes no edits or it can't be sent.
+bool ServerTopics::try_request(std::size_t model, EditRequest request)
+{
+    const auto number = edits_->number_of(model);
+    request.server_epoch = server_of(model);
+    request.model = number.value_or(0);
+    return number && request.server_epoch != 0 && requests_.try_send(std::move(request));
 }
 
 void ServerTopics::send_telemetry(MonotonicTime now)

@@ -63,7 +63,7 @@ public:
     void add_cuts(std::unique_ptr<CutSender> cuts) noexcept;
     /// Tap of the tools that carve; null without any.
     [[nodiscard]] CutTap* cut_tap() noexcept { return cuts_ != nullptr ? &cuts_->tap() : nullptr; }
-    /// True if a model has room for faces that edits add.
+    /// True if a model of a server has room for faces that edits add.
     [[nodiscard]] bool has_edits() const noexcept { return edits_ != nullptr; }
     [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
 
@@ -106,6 +106,7 @@ private:
 
     [[nodiscard]] std::uint64_t server_of(std::size_t model) const;
     void pass_edits();
+    [[nodiscard]] bool try_request(std::size_t model, EditRequest request);
     void send_telemetry(MonotonicTime now);
     void add_transport_side(std::size_t model, ModelTelemetry& telemetry, MonotonicTime now);
     void name_server(std::uint64_t& server_epoch, std::uint32_t& object) const;
@@ -118,6 +119,7 @@ private:
     std::unique_ptr<SceneKeeper> keeper_;    ///< Null if poses aren't followed.
     std::unique_ptr<dds::EditReader> edits_; ///< Null if no model can be edited.
     std::unique_ptr<CutSender> cuts_;        ///< Null if no tool carves.
+    dds::EditWriter requests_;
     EditMailbox* edit_mailbox_{nullptr};
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
     std::unique_ptr<RefinementStateSender> front_; ///< Null if no viewer gets it.

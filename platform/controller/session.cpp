@@ -32,8 +32,9 @@ namespace
 Result<std::vector<ServedModel>, Refusal> find_in_files(const Options& options)
 {
     std::vector<ServedModel> models;
-    for (const std::string& path : options.models)
+    for (std::size_t i = 0; i < options.models.size(); ++i)
     {
+        const std::string& path = options.models[i];
         const std::string name = std::filesystem::path(path).stem().string();
         auto model = serve_from_file(path, is_valid_name(name) ? name : "model", log_line);
         if (!model)
@@ -41,6 +42,7 @@ Result<std::vector<ServedModel>, Refusal> find_in_files(const Options& options)
             return failure(model.error().text);
         }
         models.push_back(std::move(model).value());
+        models.back().edit_room = i < options.edit_rooms.size() ? options.edit_rooms[i] : 0;
     }
     return models;
 }
@@ -370,7 +372,8 @@ std::optional<Refusal> Session::connect_topics(bool has_servers)
         return failure(topics.error().text);
     }
     topics_ = std::move(topics).value();
-    auto cuts = CutSender::create(client_->domain(), *controller_, options_);
+    auto cuts =
+        has_servers ? CutSender::create(*controller_, options_) : std::unique_ptr<CutSender>();
     if (!cuts)
     {
         return failure(cuts.error().text);
@@ -398,7 +401,8 @@ void Session::name_object(std::uint32_t number, const std::string& name)
     }
 }
 
-std::optional<Refusal> Session::start(ProgramScene* program, HandTap* hands)
+std::optional<Refusal> Session::start(ProgramScene* program, HandTap* hands,
+                                      const ProgramEdits& edits)
 {
     if (const auto error = start_recorder(options_, *controller_, recorder_))
     {
@@ -416,7 +420,8 @@ std::optional<Refusal> Session::start(ProgramScene* program, HandTap* hands)
                                                  .guardian = guardian_.get(),
                                                  .hooks = hooks_,
                                                  .program = program,
-                                                 .hands = hands});
+                                                 .hands = hands,
+                                                 .edits = edits});
     return run_->start();
 }
 

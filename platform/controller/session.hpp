@@ -46,9 +46,11 @@ public:
 
     /// Starts the loop on its real-time thread beside the supervisor, the transport and the
     /// recorder; with Options::is_stepped without any of these threads. `program` and `hands` may
-    /// be null; they must outlive the session. Returns the reason if it can't start. Call it once.
+    /// be null, and `edits` empty; they must outlive the session. Returns the reason if it can't
+    /// start. Call it once.
     [[nodiscard]] std::optional<Refusal> start(ProgramScene* program = nullptr,
-                                               HandTap* hands = nullptr);
+                                               HandTap* hands = nullptr,
+                                               const ProgramEdits& edits = {});
     /// Names an object for viewers. Any thread but the haptic one, before the session is destroyed.
     void name_object(std::uint32_t number, const std::string& name);
     /// The run after start() and before finish().

@@ -155,7 +155,7 @@ ProgramScene* SessionRun::connected_program()
     return parts_.program;
 }
 
-/// Mailbox of edits; null if no model can be edited.
+/// Mailbox of servers' edits; null if no server edits a model.
 EditMailbox* SessionRun::make_edit_mailbox()
 {
     if (parts_.topics->has_edits())
@@ -198,12 +198,12 @@ LoopParts SessionRun::loop_parts()
             .servers_gone = &transport_.servers_gone(),
             .starved = &transport_.starved(),
             .scene_mailbox = has_topics || parts_.program != nullptr ? &mailbox_ : nullptr,
-            .edit_mailbox = edit_mailbox_.get(),
+            .edit_mailbox = edit_mailbox_ != nullptr ? edit_mailbox_.get() : parts_.edits.mailbox,
             .telemetry = has_topics ? &telemetry_ : nullptr,
             .front = front_ ? &*front_ : nullptr,
             .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr,
             .hands = parts_.hands,
-            .cuts = has_topics ? parts_.topics->cut_tap() : nullptr};
+            .cuts = edit_mailbox_ != nullptr ? parts_.topics->cut_tap() : parts_.edits.cuts};
 }
 
 std::optional<Refusal> SessionRun::start()

@@ -35,6 +35,13 @@
 namespace tactus::hrtc
 {
 
+/// Edits of a program's own models. All must outlive the run.
+struct ProgramEdits
+{
+    EditMailbox* mailbox{nullptr}; ///< Null if no model can be edited, or a server does it.
+    CutTap* cuts{nullptr};         ///< Null if no tool carves.
+};
+
 /// Parts of one run. All must outlive the run.
 struct RunParts
 {
@@ -47,6 +54,7 @@ struct RunParts
     RunHooks hooks{};
     ProgramScene* program{nullptr}; ///< Null unless a program changes the scene.
     HandTap* hands{nullptr};        ///< Null unless a program looks at its hands.
+    ProgramEdits edits{};
 };
 
 /// One run of the loop on its real-time thread, with supervisor and transport on threads of their
@@ -108,7 +116,7 @@ private:
     PosixPeriodicTimer alarm_; ///< Timer of the supervisor.
     std::optional<BudgetGovernor> governor_;
     SceneMailbox mailbox_;
-    std::unique_ptr<EditMailbox> edit_mailbox_; ///< Null if no model can be edited.
+    std::unique_ptr<EditMailbox> edit_mailbox_; ///< Null if no server edits a model.
     TelemetryTap telemetry_;
     /// Tap of the refinement state; none if no viewer gets it.
     std::optional<RefinementStateTap> front_;

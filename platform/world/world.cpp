@@ -44,6 +44,34 @@ Result<Done, Refusal> WorldObject::remove() const
     return world != nullptr ? world->remove(*this) : gone();
 }
 
+Result<double, Refusal> WorldObject::carve(const WorldTool& shape, const HandPose& from,
+                                           const std::array<double, 3>& to_m) const
+{
+    const auto world = world_.lock();
+    return world != nullptr ? world->carve(*this, shape, from, to_m) : gone();
+}
+
+Result<double, Refusal> WorldObject::fill(const WorldTool& shape, const HandPose& from,
+                                          const std::array<double, 3>& to_m) const
+{
+    const auto world = world_.lock();
+    return world != nullptr ? world->fill(*this, shape, from, to_m) : gone();
+}
+
+Result<double, Refusal> WorldObject::displace(const std::array<double, 3>& center_m,
+                                              double radius_m,
+                                              const std::array<double, 3>& vector_m) const
+{
+    const auto world = world_.lock();
+    return world != nullptr ? world->displace(*this, center_m, radius_m, vector_m) : gone();
+}
+
+Result<Done, Refusal> WorldObject::save(const std::string& path) const
+{
+    const auto world = world_.lock();
+    return world != nullptr ? world->save(*this, path) : gone();
+}
+
 const std::string& Hand::error() const noexcept
 {
     return refused_ != nullptr ? refused_->text : kNoError;

@@ -8,6 +8,7 @@
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,6 +42,26 @@ public:
     /// Removes the object. Refused before the first frame, and like move() for the first object of
     /// a published model while its server moves it (WorldOptions::follows_poses).
     [[nodiscard]] Result<Done, Refusal> remove() const;
+
+    /// Removes from the model what a tool sweeps on its way along a straight line, without
+    /// rotation; all objects of the model change. `shape`: a sphere, a capsule, or a box or hull
+    /// without a radius. Places are in the model's frame, as it is in its file. Returns the removed
+    /// volume there, in m^3. Refused before the first frame, for a model without
+    /// ObjectOptions::edit_faces, and for what SurfaceEditor refuses. Takes a few ms; the next
+    /// frames have the new surface.
+    [[nodiscard]] Result<double, Refusal> carve(const WorldTool& shape, const HandPose& from,
+                                                const std::array<double, 3>& to_m) const;
+    /// Adds to the model what a tool sweeps, within the model's box. Returns the added volume.
+    [[nodiscard]] Result<double, Refusal> fill(const WorldTool& shape, const HandPose& from,
+                                               const std::array<double, 3>& to_m) const;
+    /// Moves the model's vertices within `radius_m` of `center_m` by
+    /// `vector_m` x (1 - d^2 / radius^2)^2 at the distance d. Returns the added volume.
+    [[nodiscard]] Result<double, Refusal> displace(const std::array<double, 3>& center_m,
+                                                   double radius_m,
+                                                   const std::array<double, 3>& vector_m) const;
+    /// Writes the model with its edits as one file: the whole file or none. As long as a mesh takes
+    /// in World::add(); also after the World has ended.
+    [[nodiscard]] Result<Done, Refusal> save(const std::string& path) const;
 
 private:
     friend class World;

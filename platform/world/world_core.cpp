@@ -214,6 +214,10 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
     {
         return material.error();
     }
+    if (auto fault = plan_.fault_of_room(model, options.edit_faces, phase_.load() == Phase::open))
+    {
+        return *std::move(fault);
+    }
     const Phase phase = phase_.load();
     hrtc::ProgramScene::Key key{static_cast<std::uint32_t>(plan_.options().objects.size()), 0};
     if (phase == Phase::ended)
@@ -232,6 +236,7 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
                                            .has_place = true,
                                            .has_material = true,
                                            .name = options.name});
+        plan_.reserve_room(model, options.edit_faces);
     }
     else
     {
@@ -373,7 +378,22 @@ std::optional<Refusal> WorldCore::try_open(bool is_stepped)
             is_served_[first] = true;
         }
     }
-    if (auto refusal = session_->start(scene_.get(), tap_.get()))
+    if (!plan_.has_published())
+    {
+        auto edits = hrtc::LocalEdits::create(controller, session_->options());
+        if (!edits)
+        {
+            close();
+            return hrtc::in_world_words(edits.error());
+        }
+        edits_ = std::move(edits).value();
+        if (edits_ != nullptr && !is_stepped)
+        {
+            edits_->start();
+        }
+    }
+    if (auto refusal = session_->start(scene_.get(), tap_.get(),
+                                       edits_ != nullptr ? edits_->ports() : hrtc::ProgramEdits{}))
     {
         close();
         return hrtc::in_world_words(*refusal);
@@ -385,6 +405,7 @@ std::optional<Refusal> WorldCore::try_open(bool is_stepped)
 void WorldCore::close()
 {
     release();
+    edits_.reset();
     tap_.reset();
     scene_.reset();
 }
@@ -454,6 +475,10 @@ void WorldCore::keep_loop(std::promise<std::optional<Refusal>> decided)
     }
     session_->running().wait("World");
     hrtc::FinishedRun done = session_->finish();
+    if (edits_ != nullptr)
+    {
+        edits_->stop();
+    }
     const std::lock_guard lock(mutex_);
     done_ = std::move(done);
     release();
@@ -591,6 +616,10 @@ Result<Done, Refusal> WorldCore::run_step(double dt_s, std::optional<std::uint32
         {
             plan_.hands()[i].held->keep_until(time);
         }
+    }
+    if (edits_ != nullptr)
+    {
+        edits_->step();
     }
     run.step(static_cast<std::uint32_t>(periods));
     tell_of_callbacks();
@@ -749,6 +778,110 @@ Result<Done, Refusal> WorldCore::remove(const WorldObject& object)
     return scene_->try_remove({object.number_, object.generation_})
                ? Result<Done, Refusal>(Done{})
                : failure("remove(): the object was removed before");
+}
+
+// --- Edits ---------------------------------------------------------------------------------------
+
+/// Model of an object that the program may edit; the handle may be of any state. With mutex_.
+Result<std::size_t, Refusal> WorldCore::editable_model_of(const WorldObject& object,
+                                                          std::string_view call) const
+{
+    if (object.refused_ != nullptr)
+    {
+        return *object.refused_;
+    }
+    if (phase_.load() == Phase::open)
+    {
+        return failure(fmt::format("{}: edits begin with the first frame", call));
+    }
+    const auto model = scene_->model_of({object.number_, object.generation_});
+    if (!model)
+    {
+        return failure(fmt::format("{}: the object was removed", call));
+    }
+    if (plan_.has_published())
+    {
+        return failure(fmt::format("{}: '{}' is of a server, which edits it; use the hand's edit",
+                                   call, name_of(object.number_)));
+    }
+    return edits_ != nullptr && edits_->has_room(model->value)
+               ? Result<std::size_t, Refusal>(std::size_t{model->value})
+               : failure(fmt::format("{}: '{}' has no room for edits; set edit_faces", call,
+                                     name_of(object.number_)));
+}
+
+/// Changes the model of an object. Without mutex_, so that no other call waits for it.
+Result<double, Refusal> WorldCore::change(const WorldObject& object, std::string_view call,
+                                          const hrtc::LocalEdits::Change& change)
+{
+    if (auto fault = fault_of_thread(call))
+    {
+        return *std::move(fault);
+    }
+    const auto model = [&]
+    {
+        const std::lock_guard lock(mutex_);
+        return phase_.load() == Phase::ended
+                   ? Result<std::size_t, Refusal>(failure(fmt::format("{}: {}", call, kHasEnded)))
+                   : editable_model_of(object, call);
+    }();
+    if (!model)
+    {
+        return model.error();
+    }
+    auto changed = edits_->change(model.value(), change);
+    return changed
+               ? changed
+               : Result<double, Refusal>(Refusal{fmt::format("{}: {}", call, changed.error().text),
+                                                 changed.error().is_usage});
+}
+
+Result<double, Refusal> WorldCore::carve(const WorldObject& object, const WorldTool& shape,
+                                         const HandPose& from, const std::array<double, 3>& to_m)
+{
+    return change(object, "carve()",
+                  [&](SurfaceEditor& editor) -> Result<SurfaceChange, Refusal>
+                  {
+                      const auto sweep = checked_sweep(shape, from, to_m);
+                      return sweep ? editor.carve(sweep.value()) : sweep.error();
+                  });
+}
+
+Result<double, Refusal> WorldCore::fill(const WorldObject& object, const WorldTool& shape,
+                                        const HandPose& from, const std::array<double, 3>& to_m)
+{
+    return change(object, "fill()",
+                  [&](SurfaceEditor& editor) -> Result<SurfaceChange, Refusal>
+                  {
+                      const auto sweep = checked_sweep(shape, from, to_m);
+                      return sweep ? editor.fill(sweep.value()) : sweep.error();
+                  });
+}
+
+Result<double, Refusal> WorldCore::displace(const WorldObject& object,
+                                            const std::array<double, 3>& center_m, double radius_m,
+                                            const std::array<double, 3>& vector_m)
+{
+    return change(object, "displace()",
+                  [&](SurfaceEditor& editor)
+                  {
+                      return editor.displace({center_m[0], center_m[1], center_m[2]}, radius_m,
+                                             {vector_m[0], vector_m[1], vector_m[2]});
+                  });
+}
+
+Result<Done, Refusal> WorldCore::save(const WorldObject& object, const std::string& path)
+{
+    if (const auto fault = fault_of_thread("save()"))
+    {
+        return *fault;
+    }
+    const auto model = [&]
+    {
+        const std::lock_guard lock(mutex_);
+        return editable_model_of(object, "save()");
+    }();
+    return model ? edits_->save(model.value(), path) : model.error();
 }
 
 // --- State ---------------------------------------------------------------------------------------

@@ -5,9 +5,11 @@
 #include "platform/controller/session.hpp"
 #include "platform/loop/hand_tap.hpp"
 #include "platform/scene/program_scene.hpp"
+#include "platform/world/local_edits.hpp"
 #include "platform/world/world.hpp"
 #include "platform/world/world_plan.hpp"
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <future>
@@ -52,6 +54,18 @@ public:
                                              const MaterialOptions& material);
     [[nodiscard]] Result<Done, Refusal> remove(const WorldObject& object);
 
+    [[nodiscard]] Result<double, Refusal> carve(const WorldObject& object, const WorldTool& shape,
+                                                const HandPose& from,
+                                                const std::array<double, 3>& to_m);
+    [[nodiscard]] Result<double, Refusal> fill(const WorldObject& object, const WorldTool& shape,
+                                               const HandPose& from,
+                                               const std::array<double, 3>& to_m);
+    [[nodiscard]] Result<double, Refusal> displace(const WorldObject& object,
+                                                   const std::array<double, 3>& center_m,
+                                                   double radius_m,
+                                                   const std::array<double, 3>& vector_m);
+    [[nodiscard]] Result<Done, Refusal> save(const WorldObject& object, const std::string& path);
+
     [[nodiscard]] HandState state(std::uint32_t hand) const noexcept;
     [[nodiscard]] std::string why(std::uint32_t hand, const HandState& state) const;
     [[nodiscard]] bool is_running() const noexcept { return phase_.load() == Phase::running; }
@@ -92,6 +106,10 @@ private:
                                                         std::string_view call) const;
     [[nodiscard]] std::optional<Refusal> why_served(const WorldObject& object,
                                                     std::string_view call) const;
+    [[nodiscard]] Result<std::size_t, Refusal> editable_model_of(const WorldObject& object,
+                                                                 std::string_view call) const;
+    [[nodiscard]] Result<double, Refusal> change(const WorldObject& object, std::string_view call,
+                                                 const hrtc::LocalEdits::Change& change);
     void tell_of_callbacks();
     [[nodiscard]] std::string name_of(std::uint32_t object) const;
 
@@ -112,6 +130,7 @@ private:
     // Set before phase_ leaves Phase::open; they live as long as the core.
     std::unique_ptr<hrtc::HandTap> tap_;
     std::unique_ptr<hrtc::ProgramScene> scene_;
+    std::unique_ptr<hrtc::LocalEdits> edits_; ///< Null if no model of a file has room for edits.
     std::unique_ptr<hrtc::Session> session_;
     std::optional<hrtc::FinishedRun> done_; ///< Results; set before Phase::ended.
     std::uint64_t told_throws_{0};          ///< Throws at the last line of the log.

@@ -80,6 +80,10 @@ struct ObjectOptions
     Pose pose{}; ///< Pose in the world; translation within 1e4 m, scale 1e-3 to 1e3.
     MaterialOptions material{};
     std::string name{}; ///< Name in messages. [default: the model's]
+    /// Room of the model for faces that edits add, 0 to kMaxAddedFaces; part of
+    /// WorldOptions::memory_mib, about 150 bytes each. The largest of its objects is used. 0 for a
+    /// published model, whose server gives the room.
+    std::uint32_t edit_faces{0};
 };
 
 /// Shape of a tool; made by the functions below. Lengths are 1e-5 to 1 m.
@@ -150,6 +154,9 @@ struct HandOptions
     std::string payload{}; ///< KG[,X,Y,Z] as for --tool-mass. [default: none]
     std::string fixture{}; ///< Virtual fixture as for --fixture; not beside `force`.
     HandForce force{};
+    /// carve:RATE as for --edit: the tool carves the models with room for edits that it presses on.
+    /// Published models are carved by their servers. [default: none]
+    std::string edit{};
 };
 
 } // namespace tactus

@@ -137,6 +137,28 @@ Result<std::size_t, Refusal> WorldPlan::take_model(const WorldModel& model, bool
     return options_.models.size() - 1;
 }
 
+std::optional<Refusal> WorldPlan::fault_of_room(std::size_t model, std::uint32_t faces,
+                                                bool is_open) const
+{
+    const auto& rooms = options_.edit_rooms;
+    const std::uint32_t most = has_published_         ? 0
+                               : is_open              ? hrtc::kEditFacesRange.high
+                               : model < rooms.size() ? rooms[model]
+                                                      : 0;
+    return faces <= most ? std::nullopt
+                         : std::optional(wrong_value(
+                               fmt::format("edit_faces: {}; 0 to {} is allowed{}", faces, most,
+                                           has_published_ ? " for a published model"
+                                           : is_open      ? ""
+                                                          : ", the room at the first frame")));
+}
+
+void WorldPlan::reserve_room(std::size_t model, std::uint32_t faces)
+{
+    options_.edit_rooms.resize(options_.models.size());
+    options_.edit_rooms[model] = std::max(options_.edit_rooms[model], faces);
+}
+
 Result<std::vector<hrtc::PlacedObject>, Refusal> WorldPlan::take_scene(const std::string& path)
 {
     auto scene = options_.readers.read_scene(path);
@@ -171,7 +193,8 @@ Result<std::uint32_t, Refusal> WorldPlan::add_hand(const WorldTool& tool, const 
     for (const std::string& fault :
          {set_device(made, device, parts, number), set_shape(made, tool),
           set_by_words(made, {{"payload", options.payload, hrtc::set_tool_mass},
-                              {"fixture", options.fixture, hrtc::set_tool_fixture}})})
+                              {"fixture", options.fixture, hrtc::set_tool_fixture},
+                              {"edit", options.edit, hrtc::set_tool_edit}})})
     {
         if (!fault.empty())
         {
@@ -192,41 +215,24 @@ Result<std::uint32_t, Refusal> WorldPlan::add_hand(const WorldTool& tool, const 
 /// Sets the tool's shape. Returns the fault; empty if there is none.
 std::string WorldPlan::set_shape(hrtc::ToolOptions& made, const WorldTool& tool)
 {
-    if (!tool.words.empty())
+    auto shape = checked_shape(tool);
+    if (!shape)
     {
-        const std::string fault = hrtc::set_tool_shape(tool.words, made);
-        return fault.empty() ? take_named_mesh(made.mesh_model()) : "tool: " + fault;
+        return shape.error().text;
     }
-    hrtc::ToolChoice& shape = made.shape.emplace();
-    shape.radius_m = tool.radius_m;
-    if (!(tool.radius_m >= 0.0 && tool.radius_m <= 1.0))
+    made.shape = std::move(shape).value();
+    if (!tool.model)
     {
-        return fmt::format("tool: radius {} m; 0 to 1 is allowed", tool.radius_m);
+        return take_named_mesh(made.mesh_model());
     }
-    if (tool.model)
+    auto model = take_model(*tool.model, true);
+    if (!model)
     {
-        auto model = take_model(*tool.model, true);
-        if (!model)
-        {
-            return "tool: " + model.error().text;
-        }
-        shape.mesh_model = options_.models[model.value()];
-        shape.words = "mesh:" + name_of_file(shape.mesh_model);
-        return {};
+        return "tool: " + model.error().text;
     }
-    std::vector<Vec3> corners;
-    for (const auto& [x, y, z] : tool.corners)
-    {
-        corners.emplace_back(x, y, z);
-    }
-    if (corners.empty() ||
-        !std::ranges::all_of(corners, [](const Vec3& corner) { return corner.allFinite(); }))
-    {
-        return "tool: a hull needs corners, all of them finite";
-    }
-    shape.words = fmt::format("hull of {}", counted(corners.size(), "corner"));
-    const auto refusal = hrtc::set_hull(shape, corners, "tool");
-    return refusal ? refusal->text : std::string();
+    made.shape->mesh_model = options_.models[model.value()];
+    made.shape->words = "mesh:" + name_of_file(made.shape->mesh_model);
+    return {};
 }
 
 /// Takes the model that a tool's words name; empty: none. Returns the fault; empty if there is

@@ -57,6 +57,11 @@ public:
     /// Returns the index of the model in the options; a file or a mesh is read first. `is_open` is
     /// false once frames run: then only known models are taken.
     [[nodiscard]] Result<std::size_t, Refusal> take_model(const WorldModel& model, bool is_open);
+    /// Fault of a room for edits that an object of a model reserves; empty if there is none.
+    [[nodiscard]] std::optional<Refusal> fault_of_room(std::size_t model, std::uint32_t faces,
+                                                       bool is_open) const;
+    /// Gives a model at least this room.
+    void reserve_room(std::size_t model, std::uint32_t faces);
     /// Takes a scene's file for a run without other objects. Returns its objects, all with a name.
     [[nodiscard]] Result<std::vector<hrtc::PlacedObject>, Refusal>
     take_scene(const std::string& path);

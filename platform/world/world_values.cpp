@@ -2,9 +2,13 @@
 // Copyright the Tactus authors.
 #include "platform/world/world_values.hpp"
 
+#include "platform/choices/messages.hpp"
+#include "platform/choices/tool_words.hpp"
+#include "platform/loop/burr.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "platform/scene/object_pose.hpp"
 #include "rt_core/math/rotation.hpp"
+#include "transport/base/counted.hpp"
 #include "transport/material_ranges.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace tactus
 {
@@ -78,6 +83,67 @@ std::optional<Refusal> fault_of(const HandPose& pose)
                                              "length 1 within {}",
                                              pose.rotation[0], pose.rotation[1], pose.rotation[2],
                                              pose.rotation[3], kRotationTolerance)));
+}
+
+Result<hrtc::ToolChoice, Refusal> checked_shape(const WorldTool& tool)
+{
+    if (!tool.words.empty())
+    {
+        hrtc::ToolOptions made;
+        const std::string fault = hrtc::set_tool_shape(tool.words, made);
+        return fault.empty() ? Result<hrtc::ToolChoice, Refusal>(*std::move(made.shape))
+                             : hrtc::failure("tool: " + fault);
+    }
+    hrtc::ToolChoice shape;
+    shape.radius_m = tool.radius_m;
+    if (!(tool.radius_m >= 0.0 && tool.radius_m <= 1.0))
+    {
+        return hrtc::failure(fmt::format("tool: radius {} m; 0 to 1 is allowed", tool.radius_m));
+    }
+    if (tool.model)
+    {
+        return shape;
+    }
+    std::vector<Vec3> corners;
+    for (const auto& [x, y, z] : tool.corners)
+    {
+        corners.emplace_back(x, y, z);
+    }
+    if (corners.empty() ||
+        !std::ranges::all_of(corners, [](const Vec3& corner) { return corner.allFinite(); }))
+    {
+        return hrtc::failure("tool: a hull needs corners, all of them finite");
+    }
+    shape.words = fmt::format("hull of {}", counted(corners.size(), "corner"));
+    const auto refusal = hrtc::set_hull(shape, corners, "tool");
+    return refusal ? Result<hrtc::ToolChoice, Refusal>(*refusal) : shape;
+}
+
+Result<Sweep, Refusal> checked_sweep(const WorldTool& shape, const HandPose& from,
+                                     const std::array<double, 3>& to_m)
+{
+    const auto tool = checked_shape(shape);
+    if (!tool)
+    {
+        return tool.error();
+    }
+    const hrtc::ToolChoice& made = tool.value();
+    const bool has_file = shape.model || !made.hull_file.empty() || !made.mesh_model.empty();
+    const auto burr = has_file ? std::nullopt : hrtc::burr_shape(made.core, made.radius_m);
+    if (!burr)
+    {
+        return hrtc::failure("tool: only a sphere, a capsule, and a box or hull of given corners "
+                             "without a radius can edit");
+    }
+    if (auto fault = fault_of(from))
+    {
+        return *std::move(fault);
+    }
+    const auto& [x, y, z, w] = from.rotation;
+    return Sweep{burr->core_m, burr->radius_m,
+                 Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix(),
+                 Vec3(from.position_m[0], from.position_m[1], from.position_m[2]),
+                 Vec3(to_m[0], to_m[1], to_m[2])};
 }
 
 } // namespace tactus

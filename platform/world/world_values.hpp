@@ -2,11 +2,14 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/edit/sweep.hpp"
+#include "platform/choices/tool_choice.hpp"
 #include "platform/world/world_parts.hpp"
 #include "rt_core/math/similarity.hpp"
 #include "rt_core/records/material.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -22,5 +25,10 @@ namespace tactus
 [[nodiscard]] Result<Similarity, Refusal> checked_place(const Pose& pose);
 /// Fault of a pose of a hand; empty if it is in range.
 [[nodiscard]] std::optional<Refusal> fault_of(const HandPose& pose);
+/// Shape of a tool without a model; that of a hull's file is not read.
+[[nodiscard]] Result<hrtc::ToolChoice, Refusal> checked_shape(const WorldTool& tool);
+/// Sweep of a tool that can carve.
+[[nodiscard]] Result<Sweep, Refusal> checked_sweep(const WorldTool& shape, const HandPose& from,
+                                                   const std::array<double, 3>& to_m);
 
 } // namespace tactus

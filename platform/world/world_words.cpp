@@ -25,6 +25,7 @@ constexpr std::pair<std::string_view, std::string_view> kNames[] = {
     {"--objects", "objects_max"},
     {"--tool-mass", "payload"},
     {"--place", "pose"},
+    {"--edits", "--edits"}, // The option of a server.
 };
 
 /// Characters before an option of a message; dashes behind others are those of a file's name.

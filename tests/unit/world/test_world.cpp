@@ -249,18 +249,28 @@ TEST(World, callbacks_may_not_call_their_world)
     EXPECT_FALSE(world.error()) << "such a call is refused, the World goes on";
     const HandForce force = [&](const ToolState&, const ToolOutput&) -> ExternalForce
     {
-        lines = {line_of(part.move({})),    line_of(part.feel({})),
-                 line_of(part.remove()),    line_of(hand.hold({})),
-                 line_of(hand.step({})),    line_of(world.step()),
-                 line_of(world.start()),    line_of(world.stop()),
-                 world.add(part).error(),   world.add_scene("table.gltf").front().error(),
-                 world.add(cube()).error(), world.error().value_or(Refusal{}).text};
+        lines = {line_of(part.move({})),
+                 line_of(part.feel({})),
+                 line_of(part.remove()),
+                 line_of(hand.hold({})),
+                 line_of(hand.step({})),
+                 line_of(world.step()),
+                 line_of(world.start()),
+                 line_of(world.stop()),
+                 world.add(part).error(),
+                 world.add_scene("table.gltf").front().error(),
+                 world.add(cube()).error(),
+                 world.error().value_or(Refusal{}).text,
+                 line_of(part.carve(sphere(0.01), {}, {})),
+                 line_of(part.fill(sphere(0.01), {}, {})),
+                 line_of(part.displace({}, 0.01, {})),
+                 line_of(part.save("part.spm"))};
         return {};
     };
     hand = world.add(sphere(kRadius_m), by_program(), {.force = force});
     const auto felt = hand.step(above(0.02));
     ASSERT_TRUE(felt) << felt.error().text;
-    EXPECT_EQ(lines.size(), 12U);
+    EXPECT_EQ(lines.size(), 16U);
     std::ranges::for_each(lines, expect_refusal);
     EXPECT_TRUE(world.stop());
 }
