@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#pragma once
-
 #include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/assert.hpp"
 
-/// Refit of the AB-Tree: included where the tree is instantiated for a volume.
+/// Refit of the AB-Tree.
 namespace tactus
 {
 
-template <typename Volume>
-typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
+AbTree::RefitWork AbTree::refit() noexcept
 {
     RefitWork work;
     // Nodes come first: `link` serves the list of marked nodes, then the lists of levels.
@@ -50,7 +47,7 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
         // A parent's level is higher than its children's, so it is visited after all of them.
         while (head != kNoNode)
         {
-            Node& node = nodes_[head];
+            AbNode& node = nodes_[head];
             head = node.link;
             node.is_queued = false;
             ++work.nodes;
@@ -59,32 +56,30 @@ typename BasicAbTree<Volume>::RefitWork BasicAbTree<Volume>::refit() noexcept
             {
                 TACTUS_ASSERT(nodes_[node.parent].shift > node.shift);
                 pass_up(node.parent, node.child,
-                        Volume::of_children(*kernels_, node.volumes, node.mask), node.below());
+                        AabbVolume::of_children(*kernels_, node.volumes, node.mask), node.below());
             }
         }
     }
     return work;
 }
 
-template <typename Volume>
-typename Volume::Box BasicAbTree<Volume>::refitted_box(std::uint32_t index) noexcept
+Aabb AbTree::refitted_box(std::uint32_t index) noexcept
 {
     const BlockGeometry& block = blocks_[index];
-    const Box box =
-        Volume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
+    const Aabb box =
+        AabbVolume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
     const BlockSide& side = sides_[index];
     return side.coarse == 0 ? box : box.inflated(largest_error_quanta(side) * quantum_m_);
 }
 
-template <typename Volume>
-void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, const Box& box,
-                                  FacesBelow faces) noexcept
+void AbTree::pass_up(std::uint32_t parent, std::uint32_t child, const Aabb& box,
+                     FacesBelow faces) noexcept
 {
     if (parent == kNoNode)
     {
         return;
     }
-    Node& node = nodes_[parent];
+    AbNode& node = nodes_[parent];
     TACTUS_ASSERT(((std::uint32_t{node.mask} >> child) & 1U) != 0);
     if (node.box_of(child) == box && node.below(child) == faces)
     {
@@ -96,8 +91,7 @@ void BasicAbTree<Volume>::pass_up(std::uint32_t parent, std::uint32_t child, con
 }
 
 /// Returns to the pool the blocks and nodes that were freed while they waited for refit.
-template <typename Volume>
-void BasicAbTree<Volume>::give_back_freed() noexcept
+void AbTree::give_back_freed() noexcept
 {
     for (std::uint32_t* at = &marked_block_; *at != kNoNode;)
     {
@@ -112,7 +106,7 @@ void BasicAbTree<Volume>::give_back_freed() noexcept
     }
     for (std::uint32_t* at = &marked_node_; *at != kNoNode;)
     {
-        Node& node = nodes_[*at];
+        AbNode& node = nodes_[*at];
         if (node.in_use)
         {
             at = &node.link;
@@ -123,33 +117,7 @@ void BasicAbTree<Volume>::give_back_freed() noexcept
     }
 }
 
-/// Numbers a change of the tree, and adds the block or node to the list that waits for refit unless
-/// it is listed.
-template <typename Volume>
-void BasicAbTree<Volume>::mark(TreeRef ref) noexcept
-{
-    last_change_ = pool_->next_change();
-    const std::uint32_t index = ref.index();
-    if (ref.is_block())
-    {
-        BlockSide& side = sides_[index];
-        if (!side.is_marked)
-        {
-            side.is_marked = true;
-            side.link = std::exchange(marked_block_, index);
-        }
-        return;
-    }
-    Node& node = nodes_[index];
-    if (!node.is_marked)
-    {
-        node.is_marked = true;
-        node.link = std::exchange(marked_node_, index);
-    }
-}
-
-template <typename Volume>
-void BasicAbTree<Volume>::mark_all() noexcept
+void AbTree::mark_all() noexcept
 {
     for (std::uint32_t i = 0; i < sides_.size(); ++i)
     {
@@ -168,10 +136,9 @@ void BasicAbTree<Volume>::mark_all() noexcept
 }
 
 /// Adds a node to refit's list of the node's level unless it is listed.
-template <typename Volume>
-void BasicAbTree<Volume>::enqueue(std::uint32_t index) noexcept
+void AbTree::enqueue(std::uint32_t index) noexcept
 {
-    Node& node = nodes_[index];
+    AbNode& node = nodes_[index];
     if (!node.is_queued)
     {
         node.is_queued = true;
@@ -179,26 +146,24 @@ void BasicAbTree<Volume>::enqueue(std::uint32_t index) noexcept
     }
 }
 
-template <typename Volume>
-typename Volume::Box BasicAbTree<Volume>::box() const noexcept
+Aabb AbTree::box() const noexcept
 {
     if (root_.is_none())
     {
-        return Box{};
+        return Aabb{};
     }
     const std::uint32_t index = root_.index();
     if (!root_.is_block())
     {
-        return Volume::of_children(*kernels_, nodes_[index].volumes, nodes_[index].mask);
+        return AabbVolume::of_children(*kernels_, nodes_[index].volumes, nodes_[index].mask);
     }
     const BlockGeometry& block = blocks_[index];
-    const Box box =
-        Volume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
+    const Aabb box =
+        AabbVolume::of_vertices(*kernels_, block.coordinates.front().data(), block.vertices);
     return box.inflated(largest_error_quanta(sides_[index]) * quantum_m_);
 }
 
-template <typename Volume>
-typename Volume::Box BasicAbTree<Volume>::box_of(TreeRef ref) const noexcept
+Aabb AbTree::box_of(TreeRef ref) const noexcept
 {
     const std::uint32_t index = ref.index();
     const std::uint32_t parent = ref.is_block() ? sides_[index].parent : nodes_[index].parent;
@@ -207,8 +172,7 @@ typename Volume::Box BasicAbTree<Volume>::box_of(TreeRef ref) const noexcept
                : nodes_[parent].box_of(ref.is_block() ? sides_[index].child : nodes_[index].child);
 }
 
-template <typename Volume>
-NodeStatus BasicAbTree<Volume>::status(TreeRef ref) const noexcept
+NodeStatus AbTree::status(TreeRef ref) const noexcept
 {
     const std::uint32_t index = ref.index();
     const bool in_use = ref.is_block() ? is_block_in_use(index) : is_node_in_use(index);
