@@ -13,4 +13,9 @@ namespace tactus::hrtc
 /// failed self-check.
 int run_deadline_test(int argc, char** argv, CommandForm form);
 
+/// Runs `hrtc doctor [--cpu N] [--domain N] [--json]`; argv[0] is "doctor". Reports properties of
+/// this machine that disturb the loop, with their remedies. Returns the exit code: 1 if a finding
+/// is critical.
+[[nodiscard]] int run_doctor(int argc, char** argv);
+
 } // namespace tactus::hrtc
