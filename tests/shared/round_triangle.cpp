@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "rt_core/geometry/round_triangle.hpp"
+#include "tests/shared/round_triangle.hpp"
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/segment_triangle.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/loopback/loopback_link.hpp"
+#include "tests/shared/loopback_link.hpp"
 
 #include "rt_core/base/assert.hpp"
 
