@@ -4,7 +4,6 @@
 
 #include "transport/base/nearest_word.hpp"
 #include "transport/base/number_form.hpp"
-#include "transport/base/numbers.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/material_ranges.hpp"
 

@@ -3,7 +3,6 @@
 #include "transport/model_name.hpp"
 
 #include "transport/base/printable.hpp"
-#include "transport/base/utf8.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/keys/authority.hpp"
 
-#include "transport/base/output_file.hpp"
+#include "transport/base/atomic_file.hpp"
 #include "transport/base/printable.hpp"
 
 #include <fmt/chrono.h>

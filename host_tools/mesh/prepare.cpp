@@ -2,11 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/prepare.hpp"
 
-#include "host_tools/mesh/detail/clean.hpp"
-#include "host_tools/mesh/detail/grid_need.hpp"
-#include "host_tools/mesh/detail/manifold.hpp"
-#include "host_tools/mesh/detail/stitch.hpp"
-#include "host_tools/mesh/detail/winding.hpp"
+#include "host_tools/mesh/detail/prepare_steps.hpp"
 #include "transport/base/counted.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/scene.hpp"
 
-#include "host_tools/scene/detail/gltf_mesh.hpp"
 #include "host_tools/scene/detail/gltf_nodes.hpp"
 #include "host_tools/scene/left_out.hpp"
 #include "host_tools/scene/unique_names.hpp"

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/scene/scene_mesh.hpp"
 #include "host_tools/scene/scene_object.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"

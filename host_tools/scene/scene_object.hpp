@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/mesh/triangle_mesh.hpp"
 #include "rt_core/records/object_pose.hpp"
 #include "transport/pose.hpp"
 
@@ -35,6 +36,14 @@ struct SceneObject
     /// False if tools pass through the object; its other members may then be invalid for a touched
     /// object.
     bool is_touched{true};
+};
+
+/// A mesh of a scene file.
+struct SceneMesh
+{
+    TriangleMesh mesh; ///< Mesh; without faces if no part has a surface.
+    /// Parts without a surface, such as "2 primitives of LINES"; empty if there are none.
+    std::string left_out;
 };
 
 } // namespace tactus

@@ -3,7 +3,7 @@
 #include "host_tools/scene/unique_names.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "transport/base/utf8.hpp"
+#include "transport/base/printable.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/shapes/detail/grid.hpp"
-#include "host_tools/shapes/detail/plate.hpp"
-#include "host_tools/shapes/detail/sine.hpp"
+#include "host_tools/shapes/detail/surfaces.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "transport/base/refusal.hpp"
 

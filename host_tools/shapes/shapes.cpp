@@ -3,10 +3,7 @@
 #include "host_tools/shapes/shapes.hpp"
 
 #include "host_tools/shapes/detail/grid.hpp"
-#include "host_tools/shapes/detail/icosphere.hpp"
-#include "host_tools/shapes/detail/plate.hpp"
-#include "host_tools/shapes/detail/sine.hpp"
-#include "host_tools/shapes/detail/turned.hpp"
+#include "host_tools/shapes/detail/surfaces.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/shapes/detail/turned.hpp"
-
 #include "host_tools/shapes/detail/grid.hpp"
-#include "host_tools/shapes/detail/sine.hpp"
+#include "host_tools/shapes/detail/surfaces.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,16 @@
 // Copyright the Tactus authors.
 #include "host_tools/simplify/candidates.hpp"
 
+#include "host_tools/simplify/collapse_mesh.hpp"
 #include "host_tools/simplify/grid_point.hpp"
-#include "host_tools/simplify/plane_quadric.hpp"
+#include "host_tools/simplify/simplify.hpp"
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/math/vec3.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -15,6 +20,53 @@ namespace tactus
 
 namespace
 {
+
+/// The memoryless quadric of a vertex: area-weighted squared distance to the planes of its
+/// *present* faces. Ignoring removed faces beats accumulating them by a fifth in RMS error, and
+/// needs no memory between rounds.
+class PlaneQuadric
+{
+public:
+    PlaneQuadric(const QuantisedMesh& mesh, const VertexRing& ring) noexcept;
+
+    /// Cost of moving the vertex to `point`, in quanta^4. Faces without area have no plane and do
+    /// not count.
+    [[nodiscard]] double at(const Vec3& point) const noexcept;
+
+private:
+    Vec3 vertex_;
+    /// Unit normals times the root of the area.
+    StaticVector<Vec3, kMaxStarFaces> planes_;
+};
+
+PlaneQuadric::PlaneQuadric(const QuantisedMesh& mesh, const VertexRing& ring) noexcept
+    : vertex_(grid_point(mesh, ring.vertex))
+{
+    Vec3 spoke = grid_point(mesh, ring.neighbours[0]) - vertex_;
+    for (std::uint32_t i = 0; i < ring.face_count; ++i)
+    {
+        const Vec3 next_spoke = grid_point(mesh, ring.neighbours[i + 1]) - vertex_;
+        const Vec3 normal = spoke.cross(next_spoke);
+        const double double_area = normal.norm();
+        if (double_area > 0)
+        {
+            planes_.push_back(normal * std::sqrt(0.5 / double_area));
+        }
+        spoke = next_spoke;
+    }
+}
+
+double PlaneQuadric::at(const Vec3& point) const noexcept
+{
+    const Vec3 offset = point - vertex_;
+    double sum = 0;
+    for (const Vec3& plane : planes_)
+    {
+        const double distance = plane.dot(offset);
+        sum += distance * distance;
+    }
+    return sum;
+}
 
 /// Factor of the fourth power of the collapsed edge's length. This cost decides between equal
 /// costs, mainly on flat regions.

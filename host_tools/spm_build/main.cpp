@@ -6,7 +6,6 @@
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/spm_build/build_scene.hpp"
-#include "host_tools/spm_build/figures.hpp"
 #include "host_tools/spm_build/options.hpp"
 #include "host_tools/spm_build/placing.hpp"
 #include "host_tools/spm_build/size_notes.hpp"
@@ -22,6 +21,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
@@ -34,6 +34,33 @@ namespace tactus::spm_build
 
 namespace
 {
+
+/// Figures for --json.
+nlohmann::json figures_of(const BuiltModel& model)
+{
+    const HeaderFields& fields = model.fields;
+    const double quantum_m = std::ldexp(1.0, fields.quantum_log2);
+    const ModelCounts counts{fields.base_vertices, fields.base_faces, fields.records};
+    const double faces = fields.source_faces;
+    return {
+        {"faces", fields.source_faces},
+        {"vertices", fields.source_vertices},
+        {"records", fields.records},
+        {"rounds", fields.rounds},
+        {"base_faces", fields.base_faces},
+        {"seconds", model.seconds},
+        {"faces_per_second", faces / model.seconds},
+        {"peak_bytes", model.peak_bytes},
+        {"file_bytes", fields.file_bytes},
+        {"metres_per_unit", model.metres_per_unit},
+        {"bytes_per_face", static_cast<double>(fields.file_bytes) / faces},
+        {"quantisation_diag", fields.quantisation_m / model.diagonal_m},
+        {"e_max_diag", fields.max_error_quanta * quantum_m / model.diagonal_m},
+        {"hausdorff_diag_sampled", model.sampled_distance_m / model.diagonal_m},
+        {"regions", fields.occupied_regions},
+        {"chunks", counts.chunks()},
+    };
+}
 
 Result<TriangleMesh, Refusal> load_source(const Options& options, std::vector<std::string>& notes)
 {

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/pose_script.hpp"
 
-#include "transport/base/numbers.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/material_text.hpp"
 

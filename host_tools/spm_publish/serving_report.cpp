@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/serving_report.hpp"
 
-#include "platform/program/print_out.hpp"
+#include "platform/program/run_program.hpp"
 #include "transport/base/counted.hpp"
 
 #include <fmt/format.h>

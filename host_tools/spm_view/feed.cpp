@@ -15,6 +15,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -222,6 +223,37 @@ std::vector<std::string> feed_datagrams(const LiveController& controller)
         datagrams.push_back(fields.bytes());
     }
     return datagrams;
+}
+
+Result<FeedSender, Refusal> FeedSender::open(const udp::Endpoint& to)
+{
+    const bool is_loopback = to.address >> 24U == 127U;
+    auto socket = udp::Socket::open(is_loopback ? "127.0.0.1" : "0.0.0.0", 0);
+    if (!socket)
+    {
+        return Refusal{"--feed-udp: " + socket.error().text};
+    }
+    return FeedSender(std::move(socket).value(), to);
+}
+
+void FeedSender::send(const Snapshot& snapshot)
+{
+    std::map<dds::ControllerId, std::uint64_t> sent;
+    for (const LiveController& controller : snapshot.controllers)
+    {
+        const dds::WatchedController& told = controller.told;
+        sent[told.id] = told.serial;
+        if (const auto last = sent_.find(told.id);
+            last != sent_.end() && last->second == told.serial)
+        {
+            continue;
+        }
+        for (const std::string& datagram : feed_datagrams(controller))
+        {
+            static_cast<void>(socket_.send(std::as_bytes(std::span(datagram)), to_));
+        }
+    }
+    sent_ = std::move(sent); // Without controllers that are gone.
 }
 
 } // namespace tactus::view

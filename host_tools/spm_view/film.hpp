@@ -4,14 +4,15 @@
 
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_shelf.hpp"
-#include "host_tools/spm_view/timeline.hpp"
 #include "platform/recording/recording.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,6 +23,31 @@
 
 namespace tactus::view
 {
+
+/// A value as a function of the frame, stored as its changes.
+template <typename T, typename Equal = std::equal_to<T>>
+class Timeline
+{
+public:
+    /// Sets the value from `frame` on. Frames must not decrease from call to call.
+    void set(std::uint64_t frame, const T& value)
+    {
+        if (steps_.empty() || !Equal{}(steps_.back().second, value))
+        {
+            steps_.emplace_back(frame, value);
+        }
+    }
+    /// Value at a frame; null before the first set().
+    [[nodiscard]] const T* at(std::uint64_t frame) const
+    {
+        const auto next =
+            std::ranges::upper_bound(steps_, frame, {}, &std::pair<std::uint64_t, T>::first);
+        return next == steps_.begin() ? nullptr : &std::prev(next)->second;
+    }
+
+private:
+    std::vector<std::pair<std::uint64_t, T>> steps_;
+};
 
 /// A recording prepared for display: for each frame the data that a viewer would have received, for
 /// access in any order. Takes about 400 bytes a frame with one tool, plus the changes. One thread

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/tactus/cached_model.hpp"
 
 #include "host_tools/tactus/programs.hpp"
-#include "platform/program/print_out.hpp"
+#include "platform/program/run_program.hpp"
 #include "rt_core/spm/header.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/program_log.hpp"

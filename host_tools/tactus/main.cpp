@@ -5,7 +5,6 @@
 /// touch.
 
 #include "host_tools/tactus/programs.hpp"
-#include "host_tools/tactus/touch.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
 #include "transport/base/nearest_word.hpp"

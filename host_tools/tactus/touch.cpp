@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/tactus/touch.hpp"
 
-#include "host_tools/tactus/cached_model.hpp"
 #include "host_tools/tactus/programs.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/stop_signals.hpp"

@@ -7,12 +7,15 @@
 #include "platform/devices/haptic_device.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/faulty_device.hpp"
+#include "platform/devices/simulated/replay_device.hpp"
 #include "platform/devices/udp/udp_device.hpp"
 #include "platform/machine/clock.hpp"
+#include "platform/recording/recording.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/records/device_limits.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -87,5 +90,13 @@ struct DeviceWait
 /// library has no guard.
 [[nodiscard]] Result<std::unique_ptr<DeviceGuard>, Refusal> open_guard(const DeviceChoice& choice,
                                                                        std::int64_t rate_hz);
+
+/// Reads the samples of a device from a recording of `hrtc --record`, one a frame. The device is
+/// that of tool `tool`, or of the first tool if there is no such tool. Largest force, largest
+/// torque and rate are those of the recorded run. With a clutch, the pose is the device pose, not
+/// the tool's. Logs missing parts of the recording. Takes as much memory as the recording, and 250
+/// bytes a frame.
+[[nodiscard]] Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& path,
+                                                                        std::size_t tool);
 
 } // namespace tactus::hrtc

@@ -2,16 +2,29 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/placed_object.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/math/similarity.hpp"
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/material.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace tactus::hrtc
 {
+
+/// Object that is in the scene from the start.
+struct PlacedObject
+{
+    std::size_t model{0}; ///< Index of its model in Options::models.
+    Similarity place;
+    Material material;
+    bool has_place{false}; ///< True if --place or the server has given the place.
+    bool has_material{false};
+    std::string name; ///< Name in its scene; empty: none.
+};
 
 /// Contents of a scene file.
 struct SceneFile

@@ -7,7 +7,6 @@
 #include "rt_core/limits.hpp"
 #include "transport/base/nearest_word.hpp"
 #include "transport/base/number_form.hpp"
-#include "transport/base/numbers.hpp"
 #include "transport/base/printable.hpp"
 
 #include <fmt/format.h>

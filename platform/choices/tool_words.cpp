@@ -2,7 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/choices/tool_words.hpp"
 
-#include "platform/choices/device_limits_text.hpp"
+#include "platform/devices/dhd/dhd_device.hpp"
+#include "platform/devices/remote/info_fault.hpp"
 #include "platform/loop/burr.hpp"
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
@@ -10,6 +11,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -103,6 +107,100 @@ std::string set_tool_motion(const std::string& text, ToolOptions& tool)
     }
     tool.simulated = {*motion, colon < text.size() ? text.substr(colon + 1) : std::string()};
     return tool.device.kind == DeviceKind::simulated ? "" : "its device is not a simulated one";
+}
+
+namespace
+{
+
+/// Name of a limit and its member in one of two structs; the other pointer is null.
+struct NamedLimit
+{
+    std::string_view name;
+    double DeviceLimits::*value{nullptr};
+    double RotationLimits::*turn{nullptr};
+};
+
+constexpr std::array kNamedLimits{
+    NamedLimit{"mass_kg", &DeviceLimits::mass_kg},
+    NamedLimit{"damping_n_s_per_m", &DeviceLimits::damping_n_s_per_m},
+    NamedLimit{"friction_n", &DeviceLimits::friction_n},
+    NamedLimit{"quantum_m", &DeviceLimits::quantum_m},
+    NamedLimit{"delay_s", &DeviceLimits::delay_s},
+    NamedLimit{"force_max_n", &DeviceLimits::force_max_n},
+    NamedLimit{"slew_max_n_per_s", &DeviceLimits::slew_max_n_per_s},
+    NamedLimit{"stiffness_max_n_per_m", &DeviceLimits::stiffness_max_n_per_m},
+    NamedLimit{"added_damping_max_n_s_per_m", &DeviceLimits::added_damping_max_n_s_per_m},
+    NamedLimit{"rotation.torque_max_nm", nullptr, &RotationLimits::torque_max_nm},
+    NamedLimit{"rotation.inertia_kg_m2", nullptr, &RotationLimits::inertia_kg_m2},
+    NamedLimit{"rotation.damping_nm_s_per_rad", nullptr, &RotationLimits::damping_nm_s_per_rad},
+    NamedLimit{"rotation.friction_nm", nullptr, &RotationLimits::friction_nm},
+    NamedLimit{"rotation.quantum_rad", nullptr, &RotationLimits::quantum_rad},
+    NamedLimit{"rotation.slew_max_nm_per_s", nullptr, &RotationLimits::slew_max_nm_per_s},
+    NamedLimit{"rotation.stiffness_max_nm_per_rad", nullptr,
+               &RotationLimits::stiffness_max_nm_per_rad},
+    NamedLimit{"rotation.added_damping_max_nm_s_per_rad", nullptr,
+               &RotationLimits::added_damping_max_nm_s_per_rad},
+};
+
+std::string limit_names()
+{
+    std::string names;
+    for (const NamedLimit& key : kNamedLimits)
+    {
+        names += (names.empty() ? "" : ", ") + std::string(key.name);
+    }
+    return names;
+}
+
+/// Fault of the limits by the rules for devices that report their own; empty if none.
+std::string fault_in_limits(const DeviceLimits& limits)
+{
+    DeviceInfo info = DhdDeviceOptions::default_info();
+    info.name = "device";
+    info.limits = limits;
+    const char* fault = find_fault(info);
+    return fault == nullptr ? "" : fault;
+}
+
+} // namespace
+
+std::string set_device_limits(std::string_view text, DeviceLimits& limits)
+{
+    DeviceLimits changed = limits;
+    std::bitset<kNamedLimits.size()> said;
+    for (bool is_last = false; !is_last;)
+    {
+        const std::size_t comma = text.find(',');
+        const std::string_view pair = text.substr(0, comma);
+        const std::size_t equals = pair.find('=');
+        const auto key = std::ranges::find(kNamedLimits, pair.substr(0, equals), &NamedLimit::name);
+        if (equals == std::string_view::npos || key == kNamedLimits.end())
+        {
+            return fmt::format("'{}' is not KEY=VALUE; the keys are {}", printable(pair),
+                               limit_names());
+        }
+        const std::optional<double> value = parse_number(pair.substr(equals + 1));
+        if (!value)
+        {
+            return fmt::format("{}: '{}' is not a number", key->name,
+                               printable(pair.substr(equals + 1)));
+        }
+        const auto at = static_cast<std::size_t>(key - kNamedLimits.begin());
+        if (said[at])
+        {
+            return fmt::format("{} is given twice", key->name);
+        }
+        said.set(at);
+        (key->value != nullptr ? changed.*key->value : changed.rotation.*key->turn) = *value;
+        is_last = comma == std::string_view::npos;
+        text.remove_prefix(is_last ? text.size() : comma + 1);
+    }
+    std::string fault = fault_in_limits(changed);
+    if (fault.empty())
+    {
+        limits = changed;
+    }
+    return fault;
 }
 
 } // namespace tactus::hrtc

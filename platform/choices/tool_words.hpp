@@ -3,8 +3,10 @@
 #pragma once
 
 #include "platform/choices/run_options.hpp"
+#include "rt_core/records/device_limits.hpp"
 
 #include <string>
+#include <string_view>
 
 // Any thread except the haptic one, because strings allocate.
 namespace tactus::hrtc
@@ -22,5 +24,10 @@ namespace tactus::hrtc
 [[nodiscard]] std::string set_tool_frame(const std::string& text, ToolOptions& tool);
 [[nodiscard]] std::string set_tool_edit(const std::string& text, ToolOptions& tool);
 [[nodiscard]] std::string set_tool_motion(const std::string& text, ToolOptions& tool);
+
+/// Sets device limits from `KEY=VALUE` pairs, separated by commas. The keys are the member names of
+/// DeviceLimits, in SI units; those of RotationLimits begin with `rotation.`. Returns the fault,
+/// and then changes nothing; empty if there is none.
+[[nodiscard]] std::string set_device_limits(std::string_view text, DeviceLimits& limits);
 
 } // namespace tactus::hrtc

@@ -8,7 +8,6 @@
 #include "platform/machine/posix/linux_extras.hpp"
 #include "platform/scene/scene_choice.hpp"
 #include "transport/base/atomic_file.hpp"
-#include "transport/base/output_file.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>

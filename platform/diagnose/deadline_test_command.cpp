@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/deadline_test_command.hpp"
-
 #include "platform/choices/messages.hpp"
 #include "platform/controller/session.hpp"
+#include "platform/diagnose/commands.hpp"
 #include "platform/diagnose/deadline_report.hpp"
 #include "platform/diagnose/frame_repeater.hpp"
 #include "platform/diagnose/load.hpp"
@@ -12,13 +11,10 @@
 #include "platform/machine/process_stop.hpp"
 #include "platform/options/program_hooks.hpp"
 #include "platform/program/command_line.hpp"
-#include "platform/program/leave_with.hpp"
-#include "platform/program/print_out.hpp"
+#include "platform/program/run_program.hpp"
 #include "platform/program/stop_signals.hpp"
 #include "platform/report/report.hpp"
-#include "platform/report/report_page.hpp"
 #include "transport/base/atomic_file.hpp"
-#include "transport/base/output_file.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <fmt/format.h>

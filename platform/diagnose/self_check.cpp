@@ -8,7 +8,7 @@
 #include "platform/machine/allocation_counter.hpp"
 #include "platform/machine/thread_usage.hpp"
 #include "platform/options/program_hooks.hpp"
-#include "platform/program/leave_with.hpp"
+#include "platform/program/run_program.hpp"
 #include "platform/program/stop_signals.hpp"
 #include "transport/base/counted.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/export/csv_sink.hpp"
+#include "platform/export/field_sink.hpp"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/export/frame_export.hpp"
 
-#include "platform/export/csv_sink.hpp"
-#include "platform/export/json_sink.hpp"
+#include "platform/export/field_sink.hpp"
 #include "platform/export/mcap_writer.hpp"
 #include "rt_core/base/assert.hpp"
 #include "transport/base/atomic_file.hpp"

@@ -13,17 +13,11 @@
 #include "platform/options/options.hpp"
 #include "platform/options/program_hooks.hpp"
 #include "platform/program/command_line.hpp"
-#include "platform/program/leave_with.hpp"
-#include "platform/program/print_out.hpp"
 #include "platform/program/run_program.hpp"
 #include "platform/program/stop_signals.hpp"
-#include "platform/report/histogram_files.hpp"
 #include "platform/report/report.hpp"
-#include "platform/report/report_page.hpp"
-#include "platform/report/report_relief.hpp"
-#include "platform/report/start_lines.hpp"
 #include "platform/report/verdict.hpp"
-#include "transport/base/output_file.hpp"
+#include "transport/base/atomic_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

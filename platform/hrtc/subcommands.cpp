@@ -2,8 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/hrtc/subcommands.hpp"
 
-#include "platform/diagnose/deadline_test_command.hpp"
-#include "platform/diagnose/doctor_command.hpp"
+#include "platform/diagnose/commands.hpp"
 #include "platform/diagnose/load.hpp"
 #include "platform/readers/file_readers.hpp"
 

@@ -3,29 +3,51 @@
 #include "platform/options/options.hpp"
 
 #include "platform/export/frame_export.hpp"
-#include "platform/options/device_key.hpp"
 #include "platform/options/file_choice.hpp"
-#include "platform/options/kernel_choice.hpp"
 #include "platform/options/option_table.hpp"
 #include "platform/options/tool_options.hpp"
 #include "platform/program/command_line.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/counted.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/program_log.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/material_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
 #include <sstream>
+#include <string>
+#include <string_view>
 
 namespace tactus::hrtc
 {
 
 namespace
 {
+
+/// Kernels of this name among those that the processor supports (available_kernels()). The refusal
+/// of another name lists the available ones.
+Result<const Kernels*, Refusal> choose_kernels(std::string_view name,
+                                               std::span<const Kernels* const> available)
+{
+    std::string names;
+    for (const Kernels* kernels : available)
+    {
+        if (kernels->name == name)
+        {
+            return kernels;
+        }
+        names += (names.empty() ? "" : ", ") + std::string(kernels->name);
+    }
+    return Refusal{fmt::format("--kernels: '{}' is not one of the kernels for this processor: {}",
+                               printable(name), names)};
+}
 
 /// Largest number of device faults; each reading of a device checks all.
 constexpr std::size_t kDeviceFaultsMax = 64;

@@ -3,8 +3,10 @@
 #include "platform/program/run_program.hpp"
 
 #include "platform/program/command_line.hpp"
+#include "transport/base/exit_codes.hpp"
 #include "transport/base/program_log.hpp"
 
+#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -32,4 +34,26 @@ int run_program(std::string_view name, std::string_view memory_hint,
     return kExitFailed;
 }
 
+void print_out(std::string_view text) noexcept
+{
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout));
+    static_cast<void>(std::fflush(stdout));
+}
+
 } // namespace tactus
+
+namespace tactus::hrtc
+{
+
+Refusal interruption()
+{
+    return {"interrupted; there is no verdict"};
+}
+
+int leave_with(const Refusal& error)
+{
+    log_message(LogLevel::error, "hrtc", error.text);
+    return error.is_usage ? kExitUsage : kExitFailed;
+}
+
+} // namespace tactus::hrtc

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "transport/base/refusal.hpp"
+
 #include <functional>
 #include <string_view>
 
@@ -15,4 +17,19 @@ namespace tactus
 [[nodiscard]] int run_program(std::string_view name, std::string_view memory_hint,
                               const std::function<int()>& body);
 
+/// Writes the text to stdout and flushes it. If the reader is gone or the disk is full, the text is
+/// lost and the program goes on.
+void print_out(std::string_view text) noexcept;
+
 } // namespace tactus
+
+namespace tactus::hrtc
+{
+
+/// Refusal of a result for a run that a signal has ended.
+[[nodiscard]] Refusal interruption();
+
+/// Logs `error` as an error of hrtc. Returns the exit code.
+int leave_with(const Refusal& error);
+
+} // namespace tactus::hrtc

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/recording/core_coding.hpp"
 
-#include "platform/recording/byte_append.hpp"
+#include "platform/recording/fixed_writer.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/base/byte_io.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 namespace tactus
 {
@@ -54,5 +56,19 @@ private:
     std::span<std::byte> bytes_;
     std::size_t at_{0};
 };
+
+/// Appends a value in little-endian, without padding: the counterpart of ByteReader.
+template <typename T>
+void append(std::vector<std::byte>& bytes, const T& value)
+{
+    static_assert(std::is_arithmetic_v<T>);
+    const auto* first = reinterpret_cast<const std::byte*>(&value);
+    bytes.insert(bytes.end(), first, first + sizeof(T));
+}
+
+inline void append_bytes(std::vector<std::byte>& bytes, std::span<const std::byte> more)
+{
+    bytes.insert(bytes.end(), more.begin(), more.end());
+}
 
 } // namespace tactus

@@ -3,7 +3,6 @@
 #include "platform/recording/frame_decoder.hpp"
 
 #include "platform/recording/change_coding.hpp"
-#include "platform/recording/device_coding.hpp"
 #include "platform/recording/frame_encoder.hpp"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "platform/recording/frame_encoder.hpp"
 
 #include "platform/recording/change_coding.hpp"
-#include "platform/recording/device_coding.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <algorithm>

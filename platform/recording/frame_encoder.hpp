@@ -3,7 +3,6 @@
 #pragma once
 
 #include "platform/recording/change_coding.hpp"
-#include "platform/recording/device_coding.hpp"
 #include "platform/recording/fixed_writer.hpp"
 #include "platform/recording/output_hash.hpp"
 #include "rt_core/limits.hpp"

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/recording/recording_writer.hpp"
 
-#include "platform/recording/byte_append.hpp"
+#include "platform/recording/fixed_writer.hpp"
 #include "platform/recording/setup_coding.hpp"
 #include "rt_core/base/crc32c.hpp"
 

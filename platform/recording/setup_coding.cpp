@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/recording/setup_coding.hpp"
 
-#include "platform/recording/byte_append.hpp"
 #include "platform/recording/change_coding.hpp"
 #include "platform/recording/core_coding.hpp"
+#include "platform/recording/fixed_writer.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/printable.hpp"

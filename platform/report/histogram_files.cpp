@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/histogram_files.hpp"
-
 #include "platform/controller/histogram_folder.hpp"
-#include "transport/base/output_file.hpp"
+#include "platform/report/report.hpp"
+#include "transport/base/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/limit_words.hpp"
-
+#include "platform/report/verdict.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/counted.hpp"
 

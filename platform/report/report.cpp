@@ -8,9 +8,8 @@
 #include "platform/devices/udp/udp_device.hpp"
 #include "platform/loop/machine.hpp"
 #include "platform/machine/allocation_counter.hpp"
-#include "platform/report/report_events.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
-#include "transport/base/output_file.hpp"
+#include "transport/base/atomic_file.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>

@@ -2,11 +2,18 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/loop/run_statistics.hpp"
+#include "platform/machine/latency_histogram.hpp"
+#include "platform/plot/chart.hpp"
+#include "platform/plot/relief.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,5 +39,46 @@ using SummaryFacts = std::vector<std::pair<std::string, std::string>>;
 /// Writes the report as a whole or not at all. Returns the reason if that fails.
 [[nodiscard]] std::optional<Refusal> write_report(const nlohmann::ordered_json& report,
                                                   const std::string& path);
+
+/// Lines on the objects and tools before the run: one for each object, or one for many, and one or
+/// two for each tool. They warn of objects out of reach and of walls too soft to feel. They name
+/// default places and materials if other objects have given ones.
+[[nodiscard]] std::string start_lines(const Options& options, const Controller& controller);
+
+/// HTML page of a run's report, with the verdict, all figures and charts. `statistics` must be
+/// those of the report. The charts show force, bounds and stage times over the run, and histograms
+/// of the times. `relief` shows the paths of the tools; without it the page has no picture.
+[[nodiscard]] std::string make_page(const nlohmann::ordered_json& report,
+                                    const RunStatistics& statistics, plot::ChartLibrary library,
+                                    const plot::Relief& relief = {});
+
+/// Picture of the tools' paths with their forces, and of the base meshes of the nearest objects at
+/// their first poses. Call it once the loop has ended.
+[[nodiscard]] plot::Relief relief_of(const Controller& controller, const RunStatistics& statistics);
+
+/// Part of the report on deadlines, with single cycles.
+[[nodiscard]] nlohmann::ordered_json deadlines_of(const FinishedRun& run);
+
+/// Part of the report on safety: brakes, and times and causes of fades.
+[[nodiscard]] nlohmann::ordered_json safety_of(const FinishedRun& run);
+
+/// Part of the report on the servers with authority and their events. Times count from the first
+/// safety event; earlier ones are negative.
+[[nodiscard]] nlohmann::ordered_json servers_of(const FinishedRun& run);
+
+/// Word of the summary or the verdict, and its meaning.
+using ReportWord = std::pair<const char*, const char*>;
+
+/// Words of the page that a reader may not know: answers, times, causes of a fade.
+[[nodiscard]] std::span<const ReportWord> report_words() noexcept;
+
+/// Percentiles of the histogram in microseconds, as text in the format of HdrHistogram (.hgrm) for
+/// its plotter and other readers. Each halving of the share above a percentile has five lines.
+[[nodiscard]] std::string hdr_text(const LatencyHistogram& histogram);
+
+/// Writes one file for each of the report's times, named after it, such as frame.hgrm. Returns the
+/// refusal of the first file that can't be written.
+[[nodiscard]] std::optional<Refusal> write_histograms(const RunStatistics& statistics,
+                                                      const std::string& folder);
 
 } // namespace tactus::hrtc

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/report_events.hpp"
-
 #include "platform/controller/finished_run.hpp"
+#include "platform/report/report.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/report_page.hpp"
 
 #include "platform/plot/page.hpp"
 #include "platform/report/latency_chart.hpp"
 #include "platform/report/report.hpp"
-#include "platform/report/report_words.hpp"
 #include "platform/report/verdict.hpp"
 #include "transport/base/counted.hpp"
 

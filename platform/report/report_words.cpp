@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/report_words.hpp"
+#include "platform/report/report.hpp"
 
 namespace tactus::hrtc
 {

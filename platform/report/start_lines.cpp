@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/start_lines.hpp"
-
 #include "platform/report/footprint.hpp"
+#include "platform/report/report.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/frame/frame_setup.hpp"

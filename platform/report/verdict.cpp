@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/report/verdict.hpp"
 
-#include "platform/report/limit_words.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "transport/base/counted.hpp"
 

@@ -41,4 +41,9 @@ struct Complaint
 /// Text "ok", or the verdict on scene, controller and machine separately.
 [[nodiscard]] std::string verdict_text(std::span<const Complaint> complaints);
 
+/// Text on the limit that most frames of the run reached, with their number and the remedy, such as
+/// "no room for faces (forest_full in 12 frames): --pool-mib 8, 4 times as much". Empty if no limit
+/// was reached.
+[[nodiscard]] std::string limit_text(const nlohmann::ordered_json& report);
+
 } // namespace tactus::hrtc

@@ -48,28 +48,22 @@ enum class NodeStatus : std::uint8_t
 ///
 /// A block or node freed while it waits for refit() returns to the pool there at the latest.
 ///
-/// The bounding volume is a policy; AbTree uses AabbVolume. All memory is the pool's.
+/// All memory is the pool's.
 ///
 /// Haptic thread only.
-template <typename VolumePolicy>
-class BasicAbTree
+class AbTree
 {
 public:
-    using Volume = VolumePolicy;
-    using Pool = BasicTreePool<Volume>;
-    using Node = typename Pool::Node;
-    using Box = typename Volume::Box;
-
     struct RefitWork
     {
         std::uint32_t blocks{0};
         std::uint32_t nodes{0};
     };
 
-    /// Pool and kernels must outlive the tree. `least` blocks and nodes are reserved for it in the
-    /// pool, or as many as are free. Each tree of a pool has another `owner`, below kMaxModels.
-    BasicAbTree(Pool& pool, ModelId owner, const TreeCapacities& least, float quantum_m,
-                const Kernels& kernels = best_kernels()) noexcept;
+    /// TreePool and kernels must outlive the tree. `least` blocks and nodes are reserved for it in
+    /// the pool, or as many as are free. Each tree of a pool has another `owner`, below kMaxModels.
+    AbTree(TreePool& pool, ModelId owner, const TreeCapacities& least, float quantum_m,
+           const Kernels& kernels = best_kernels()) noexcept;
 
     /// Adds a face. No tree of the pool may have a face with the same prim (asserted).
     void insert(const ChangedFace& face) noexcept TACTUS_NONBLOCKING;
@@ -142,7 +136,7 @@ public:
     /// while the number stays the same.
     [[nodiscard]] std::uint64_t last_change() const noexcept { return last_change_; }
     [[nodiscard]] TreeRef root() const noexcept { return root_; }
-    [[nodiscard]] const Node& node(std::uint32_t index) const noexcept { return nodes_[index]; }
+    [[nodiscard]] const AbNode& node(std::uint32_t index) const noexcept { return nodes_[index]; }
     [[nodiscard]] const BlockGeometry& block(std::uint32_t index) const noexcept
     {
         return blocks_[index];
@@ -173,10 +167,10 @@ public:
             __builtin_prefetch(&sides_[ref.index()].coarse);
         }
     }
-    /// Bounding volume of all faces, errors added; empty if the tree is empty.
-    [[nodiscard]] Box box() const noexcept TACTUS_NONBLOCKING;
-    /// Bounding volume of a node or block of this tree, errors added.
-    [[nodiscard]] Box box_of(TreeRef ref) const noexcept TACTUS_NONBLOCKING;
+    /// Box of all faces, errors added; empty if the tree is empty.
+    [[nodiscard]] Aabb box() const noexcept TACTUS_NONBLOCKING;
+    /// Box of a node or block of this tree, errors added.
+    [[nodiscard]] Aabb box_of(TreeRef ref) const noexcept TACTUS_NONBLOCKING;
     /// Lasting id of a prim's face, used to break ties and in answers; none if the prim has no
     /// face.
     [[nodiscard]] FaceId face_of(PrimId prim) const noexcept
@@ -197,12 +191,12 @@ public:
     [[nodiscard]] std::uint32_t blocks_used_max() const noexcept { return blocks_used_max_; }
     [[nodiscard]] std::uint32_t nodes_used() const noexcept { return nodes_used_; }
     [[nodiscard]] std::uint32_t nodes_used_max() const noexcept { return nodes_used_max_; }
-    [[nodiscard]] const Pool& pool() const noexcept { return *pool_; }
+    [[nodiscard]] const TreePool& pool() const noexcept { return *pool_; }
     [[nodiscard]] float quantum_m() const noexcept { return quantum_m_; }
     [[nodiscard]] const Kernels& kernels() const noexcept { return *kernels_; }
 
 private:
-    friend class TreeValidator<BasicAbTree>;
+    friend class TreeValidator;
 
     using Prim = TreePrim;
     static constexpr std::uint32_t kUnplaced = 0x8000'0000U;
@@ -249,18 +243,18 @@ private:
     void give_back_freed() noexcept TACTUS_NONBLOCKING;
     void mark(TreeRef ref) noexcept;
     void enqueue(std::uint32_t index) noexcept;
-    [[nodiscard]] Box refitted_box(std::uint32_t index) noexcept;
-    void pass_up(std::uint32_t parent, std::uint32_t child, const Box& box,
+    [[nodiscard]] Aabb refitted_box(std::uint32_t index) noexcept;
+    void pass_up(std::uint32_t parent, std::uint32_t child, const Aabb& box,
                  FacesBelow faces) noexcept;
     void keep_unplaced(PrimId prim) noexcept;
     void drop_unplaced(PrimId prim) noexcept;
 
-    Pool* pool_;
+    TreePool* pool_;
     float quantum_m_;
     const Kernels* kernels_;
     std::span<BlockGeometry> blocks_; ///< Arrays of the whole pool, here and in the three below.
     std::span<BlockSide> sides_;
-    std::span<Node> nodes_;
+    std::span<AbNode> nodes_;
     std::span<Prim> prims_;
     std::array<std::uint32_t, kTreeLevels> dirty_heads_{};
     TreeRef root_;
@@ -275,8 +269,5 @@ private:
     std::uint32_t blocks_used_max_{0};
     std::uint32_t nodes_used_max_{0};
 };
-
-using AbTree = BasicAbTree<AabbVolume>;
-extern template class BasicAbTree<AabbVolume>;
 
 } // namespace tactus

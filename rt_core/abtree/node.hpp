@@ -49,18 +49,17 @@ struct FacesBelow
     bool operator==(const FacesBelow&) const noexcept = default;
 };
 
-/// An 8-wide node of the AB-Tree over a bounding volume. It represents one octal digit of the
+/// An 8-wide node of the AB-Tree. It represents one octal digit of the
 /// faces' paths, at bit `shift`; all paths below it agree above that digit. A child is a node (one
 /// digit value) or a block (an aligned range of 1, 2 or 4 digit values: the binary levels are
 /// collapsed). 256 B with boxes.
-template <typename Volume>
-struct alignas(64) BasicAbNode
+struct alignas(64) AbNode
 {
     static constexpr std::uint32_t kNoChild = 8;
     static_assert(kNoChild >= kNodeChildren, "no child's index is the index of no child");
     static constexpr std::uint32_t kSeveral = 9; ///< Result of only_child_in(); never stored.
 
-    typename Volume::Rows volumes{}; ///< Volumes of the children.
+    AabbVolume::Rows volumes{}; ///< Boxes of the children.
     std::array<TreeRef, kNodeChildren> children{};
     /// Path of a face inserted below; only bits above the node's digit count.
     std::uint64_t prefix{0};
@@ -134,7 +133,7 @@ struct alignas(64) BasicAbNode
     {
         return static_cast<std::uint32_t>(std::popcount(mask));
     }
-    [[nodiscard]] typename Volume::Box box_of(std::uint32_t index) const noexcept
+    [[nodiscard]] Aabb box_of(std::uint32_t index) const noexcept
     {
         TACTUS_ASSERT(index < kNodeChildren);
         return volumes.get(index);
@@ -155,8 +154,6 @@ struct alignas(64) BasicAbNode
         exact = static_cast<std::uint8_t>(faces.some_exact ? exact | bit : exact & ~bit);
     }
 };
-
-using AbNode = BasicAbNode<AabbVolume>;
 
 static_assert(sizeof(AbNode) == 256);
 

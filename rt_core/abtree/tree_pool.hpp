@@ -31,7 +31,6 @@ struct TreeShare
     PoolShare nodes;
 };
 
-template <typename Tree>
 class TreeValidator;
 
 /// A face of a tree, or a free entry (`face` is none).
@@ -46,23 +45,20 @@ struct TreePrim
     std::uint32_t leaf{kNoLeaf};
 };
 
-/// The memory of AB-Trees over one kind of volume. A tree's blocks and nodes lie anywhere in it.
+/// The memory of AB-Trees. A tree's blocks and nodes lie anywhere in it.
 /// The creator of the faces assigns the prims. 352 B a block, 256 B a node with boxes, 12 B a prim.
 ///
 /// Haptic thread only.
-template <typename VolumePolicy>
-class BasicTreePool
+class TreePool
 {
 public:
-    using Node = BasicAbNode<VolumePolicy>;
-
     /// Largest number of blocks: a face's place, block x 16 + lane, has 31 bits.
     static constexpr std::uint32_t kMostBlocks = 0x8000'0000U / kBlockFaces;
 
-    BasicTreePool(Arena& arena, const TreeCapacities& capacities) noexcept
+    TreePool(Arena& arena, const TreeCapacities& capacities) noexcept
         : blocks_(arena.take<BlockGeometry>(capacities.blocks))
         , sides_(arena.take<BlockSide>(capacities.blocks))
-        , nodes_(arena.take<Node>(capacities.nodes))
+        , nodes_(arena.take<AbNode>(capacities.nodes))
         , prims_(arena.take<TreePrim>(capacities.prims))
         , block_room_(capacities.blocks)
         , node_room_(capacities.nodes)
@@ -141,7 +137,7 @@ public:
         TACTUS_ASSERT(!nodes_[node].in_use);
         TACTUS_ASSERT(!nodes_[node].is_marked);
         free_node_ = nodes_[node].parent;
-        nodes_[node] = Node{};
+        nodes_[node] = AbNode{};
         nodes_[node].in_use = true;
         nodes_[node].owner = static_cast<std::uint8_t>(owner.value);
         return node;
@@ -164,7 +160,7 @@ public:
 
     [[nodiscard]] std::span<BlockGeometry> blocks() const noexcept { return blocks_; }
     [[nodiscard]] std::span<BlockSide> sides() const noexcept { return sides_; }
-    [[nodiscard]] std::span<Node> nodes() const noexcept { return nodes_; }
+    [[nodiscard]] std::span<AbNode> nodes() const noexcept { return nodes_; }
     [[nodiscard]] std::span<TreePrim> prims() const noexcept { return prims_; }
     [[nodiscard]] TreeCapacities capacities() const noexcept
     {
@@ -173,12 +169,11 @@ public:
     }
 
 private:
-    template <typename Tree>
     friend class TreeValidator;
 
     std::span<BlockGeometry> blocks_;
     std::span<BlockSide> sides_;
-    std::span<Node> nodes_;
+    std::span<AbNode> nodes_;
     std::span<TreePrim> prims_;
     PoolRoom block_room_;
     PoolRoom node_room_;
@@ -186,7 +181,5 @@ private:
     std::uint32_t free_node_{kNoNode};
     std::uint64_t changes_{0};
 };
-
-using TreePool = BasicTreePool<AabbVolume>;
 
 } // namespace tactus

@@ -14,7 +14,7 @@
 namespace tactus
 {
 
-/// Checks an AB-Tree against its invariants after refit():
+/// Checks an AB-AbTree against its invariants after refit():
 ///
 ///     free lists   of the pool hold exactly what no tree uses, each once
 ///     links        a child and its parent name each other; a parent's digit is above its child's;
@@ -25,11 +25,10 @@ namespace tactus
 ///
 /// Each block, node and prim is visited once, without recursion or memory. The check trusts the
 /// kernels that compute boxes; the tests' own oracle does not.
-template <typename Tree>
 class TreeValidator
 {
 public:
-    [[nodiscard]] static Flaw find_flaw(const Tree& tree) noexcept TACTUS_NONBLOCKING
+    [[nodiscard]] static Flaw find_flaw(const AbTree& tree) noexcept TACTUS_NONBLOCKING
     {
         TreeValidator validator(tree);
         validator.check_free_blocks();
@@ -54,11 +53,7 @@ public:
     }
 
 private:
-    using Node = typename Tree::Node;
-    using Box = typename Tree::Box;
-    using Volume = typename Tree::Volume;
-
-    explicit TreeValidator(const Tree& tree) noexcept : tree_(tree) {}
+    explicit TreeValidator(const AbTree& tree) noexcept : tree_(tree) {}
 
     [[nodiscard]] bool is_sound() const noexcept { return finder_.is_sound(); }
     bool block(bool holds, std::uint32_t index, const char* what) noexcept
@@ -111,7 +106,7 @@ private:
             }
         }
         const auto in_use = static_cast<std::uint32_t>(
-            std::ranges::count_if(tree_.nodes_, [](const Node& each) { return each.in_use; }));
+            std::ranges::count_if(tree_.nodes_, [](const AbNode& each) { return each.in_use; }));
         finder_.expect(listed == free, "tree", listed,
                        "nodes are in its pool's free list, but the pool's count differs");
         finder_.expect(listed + in_use == pool.capacities().nodes, "tree", in_use,
@@ -166,7 +161,7 @@ private:
     [[nodiscard]] bool leads_to(std::uint32_t parent, std::uint32_t child,
                                 std::uint64_t path) const noexcept
     {
-        const Node& above = tree_.nodes_[parent];
+        const AbNode& above = tree_.nodes_[parent];
         return above.holds(path) && above.child_of(above.digit_of(path)) == child;
     }
 
@@ -185,7 +180,7 @@ private:
         {
             return;
         }
-        const Box box = refitted_box(index);
+        const Aabb box = refitted_box(index);
         std::uint32_t rows = 0;
         std::uint32_t coarse = 0;
         for (std::uint32_t lanes = geometry.faces; lanes != 0; lanes &= lanes - 1)
@@ -207,7 +202,7 @@ private:
         block(side.coarse == coarse, index, "has wrong coarse bits");
         if (side.parent != kNoNode)
         {
-            const Node& parent = tree_.nodes_[side.parent];
+            const AbNode& parent = tree_.nodes_[side.parent];
             block(parent.box_of(side.child) == box, index, "has another box at its parent");
             block(parent.below(side.child) == FacesBelow{coarse != 0, coarse != geometry.faces},
                   index, "has a wrong coarse or exact bit at its parent");
@@ -227,25 +222,25 @@ private:
         const auto& known = tree_.prims_[value];
         if (side.parent != kNoNode)
         {
-            prim(leads_to(side.parent, side.child, Tree::path_of(known.face, known.bucket)), value,
-                 "lies off its path");
+            prim(leads_to(side.parent, side.child, AbTree::path_of(known.face, known.bucket)),
+                 value, "lies off its path");
         }
     }
 
-    [[nodiscard]] Box refitted_box(std::uint32_t index) const noexcept
+    [[nodiscard]] Aabb refitted_box(std::uint32_t index) const noexcept
     {
         const BlockGeometry& geometry = tree_.blocks_[index];
-        const Box box = Volume::of_vertices(*tree_.kernels_, geometry.coordinates.front().data(),
-                                            geometry.vertices);
+        const Aabb box = AabbVolume::of_vertices(
+            *tree_.kernels_, geometry.coordinates.front().data(), geometry.vertices);
         const BlockSide& side = tree_.sides_[index];
         return side.coarse == 0 ? box : box.inflated(largest_error_quanta(side) * tree_.quantum_m_);
     }
 
     /// Checks that a block's box holds a face and its error; other volumes than Aabb are not
     /// checked.
-    void check_is_inside(const Box& box, std::uint32_t index, std::uint32_t lane) noexcept
+    void check_is_inside(const Aabb& box, std::uint32_t index, std::uint32_t lane) noexcept
     {
-        if constexpr (std::same_as<Box, Aabb>)
+        if constexpr (std::same_as<Aabb, Aabb>)
         {
             const double error =
                 static_cast<double>(error_in_quanta(tree_.sides_[index].errors[lane])) *
@@ -265,7 +260,7 @@ private:
 
     void check_node(std::uint32_t index) noexcept
     {
-        const Node& own = tree_.nodes_[index];
+        const AbNode& own = tree_.nodes_[index];
         node((!own.is_marked && !own.is_queued) || own.owner != tree_.owner_, index,
              "is marked after refit");
         if (!tree_.is_node_in_use(index))
@@ -283,11 +278,11 @@ private:
         {
             return;
         }
-        const Node& parent = tree_.nodes_[own.parent];
+        const AbNode& parent = tree_.nodes_[own.parent];
         node(parent.shift > own.shift, index, "is not below its parent's digit");
         node(leads_to(own.parent, own.child, own.prefix), index, "lies off its path");
         node(parent.box_of(own.child) ==
-                 Volume::of_children(*tree_.kernels_, own.volumes, own.mask),
+                 AabbVolume::of_children(*tree_.kernels_, own.volumes, own.mask),
              index, "has another box at its parent");
         node(parent.below(own.child) == own.below(), index,
              "has a wrong coarse or exact bit at its parent");
@@ -295,7 +290,7 @@ private:
 
     void check_children(std::uint32_t index) noexcept
     {
-        const Node& own = tree_.nodes_[index];
+        const AbNode& own = tree_.nodes_[index];
         for (std::uint32_t child = 0; child < kNodeChildren; ++child)
         {
             const TreeRef ref = own.children[child];
@@ -317,12 +312,12 @@ private:
     /// digit.
     void check_digits(std::uint32_t index) noexcept
     {
-        const Node& own = tree_.nodes_[index];
+        const AbNode& own = tree_.nodes_[index];
         std::uint32_t reached = 0;
         for (std::uint32_t digit = 0; digit < kNodeChildren; ++digit)
         {
             const std::uint32_t child = own.child_of(digit);
-            node(child <= Node::kNoChild, index, "has a digit without a child");
+            node(child <= AbNode::kNoChild, index, "has a digit without a child");
             reached |= child < kNodeChildren ? 1U << child : 0U;
         }
         if (!node(reached == own.mask, index, "has digits that name other children"))
@@ -344,7 +339,7 @@ private:
     void check_prim(std::uint32_t index) noexcept
     {
         const auto& own = tree_.prims_[index];
-        if (own.leaf == Tree::kNoLeaf)
+        if (own.leaf == AbTree::kNoLeaf)
         {
             prim(own.face.is_none(), index, "has a face and no place");
             return;
@@ -352,7 +347,7 @@ private:
         prim(!own.face.is_none(), index, "has a place and no face");
         const std::uint32_t at = own.leaf / kBlockFaces;
         const std::uint32_t lane = own.leaf % kBlockFaces;
-        if ((own.leaf & Tree::kUnplaced) != 0 ||
+        if ((own.leaf & AbTree::kUnplaced) != 0 ||
             (at < tree_.sides_.size() && tree_.sides_[at].owner != tree_.owner_))
         {
             return; // The face is unplaced, or of another tree.
@@ -366,25 +361,24 @@ private:
     void check_unplaced() noexcept
     {
         std::uint32_t listed = 0;
-        for (std::uint32_t i = tree_.first_unplaced_; is_sound() && i != Tree::kLastUnplaced;)
+        for (std::uint32_t i = tree_.first_unplaced_; is_sound() && i != AbTree::kLastUnplaced;)
         {
             if (prim(i < tree_.prims_.size(), i, "is unplaced and out of range") &&
                 prim(tree_.is_unplaced({i}), i, "is placed and in the list of the unplaced") &&
                 prim(++listed <= tree_.prims_.size(), i, "is twice in the list of the unplaced"))
             {
-                i = tree_.prims_[i].leaf & ~Tree::kUnplaced;
+                i = tree_.prims_[i].leaf & ~AbTree::kUnplaced;
             }
         }
     }
 
-    const Tree& tree_;
+    const AbTree& tree_;
     FlawFinder finder_;
 };
 
-template <typename Volume>
-[[nodiscard]] Flaw find_flaw(const BasicAbTree<Volume>& tree) noexcept TACTUS_NONBLOCKING
+[[nodiscard]] inline Flaw find_flaw(const AbTree& tree) noexcept TACTUS_NONBLOCKING
 {
-    return TreeValidator<BasicAbTree<Volume>>::find_flaw(tree);
+    return TreeValidator::find_flaw(tree);
 }
 
 } // namespace tactus

@@ -14,12 +14,9 @@ namespace tactus
 inline constexpr std::uint32_t kNodeChildren = 8;
 static_assert(kNodeChildren <= 8, "a node's masks are bytes");
 
-/// The bounding volume of the AB-Tree, as a policy: the volume type, a node's storage of its eight
-/// children's volumes, and the loops over them. Another volume needs the same members.
+/// A node's storage of its eight children's boxes, and the loops over boxes.
 struct AabbVolume
 {
-    using Box = Aabb;
-
     /// The children's boxes, row by axis, in the kernels' layout.
     struct Rows
     {

@@ -108,13 +108,13 @@ struct WalkItem
     float gap{0.0F};
 };
 
-/// Depth-first traversal of the blocks near a point, or near a box given as a KernelBox. `Tree` is
-/// a BasicAbTree of any bounding volume. The nearest child is entered first.
-template <typename Tree, typename Probe>
+/// Depth-first traversal of the blocks near a point, or near a box given as a KernelBox. The
+/// nearest child is entered first.
+template <typename Probe>
 class TreeWalk
 {
 public:
-    TreeWalk(const Tree& tree, const Probe& probe, WalkBudget& budget) noexcept
+    TreeWalk(const AbTree& tree, const Probe& probe, WalkBudget& budget) noexcept
         : tree_(tree), probe_(probe), budget_(budget)
     {
         if (!tree.root().is_none())
@@ -154,13 +154,13 @@ public:
     [[nodiscard]] std::span<const WalkItem> left() const noexcept { return stack_.view(); }
 
 private:
-    void push_children(const typename Tree::Node& node, float bound, bool coarse_only) noexcept
+    void push_children(const AbNode& node, float bound, bool coarse_only) noexcept
     {
         TACTUS_ASSERT(node.in_use);
         alignas(32) std::array<float, kNodeChildren> gaps; // NOLINT: the kernel fills it.
         const std::uint32_t wanted = coarse_only ? node.mask & node.coarse : node.mask;
-        std::uint32_t near = Tree::Volume::child_gaps(tree_.kernels(), node.volumes, probe_, wanted,
-                                                      bound, gaps.data());
+        std::uint32_t near = AabbVolume::child_gaps(tree_.kernels(), node.volumes, probe_, wanted,
+                                                    bound, gaps.data());
         const std::size_t first = stack_.size();
         for (std::size_t nearest = first; near != 0; near &= near - 1)
         {
@@ -180,7 +180,7 @@ private:
         }
     }
 
-    const Tree& tree_;
+    const AbTree& tree_;
     const Probe& probe_;
     WalkBudget& budget_;
     StaticVector<WalkItem, kTreeStack> stack_;

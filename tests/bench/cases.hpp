@@ -110,11 +110,4 @@ struct RefitCase
 /// Refit after a local change, at a hundred places of a fully refined model.
 void run_refit_case(const CaseContext& context, const RefitCase& test_case);
 
-struct VolumeCase
-{
-    SceneSource scene;
-};
-/// Queries and refits of the static model over 18-DOPs, compared with boxes.
-void run_volume_case(const CaseContext& context, const VolumeCase& test_case);
-
 } // namespace tactus::bench

@@ -39,13 +39,11 @@ std::vector<Case> frame_cases()
                   StaticCase{kBunny, 0.6, 0.45, 0.3, 2.0}),
         make_case("static-4.3M", When::full_only, run_static_case,
                   StaticCase{kFineIgea, 0.2, 0.15, 0.3, 2.0}),
-        make_case("volume-bunny", When::always, run_volume_case, VolumeCase{kBunny}),
         make_case("static-growth", When::full_only, run_growth_case, GrowthCase{3.0}),
         frame("frame-tiny", When::named_only,
               {kTiny, 0.1, 64, kMiB, kNoGoal, kNoGoal, kNoGoal, kNoGoal}),
         make_case("refit-tiny", When::named_only, run_refit_case, RefitCase{kTiny}),
         make_case("static-tiny", When::named_only, run_static_case, StaticCase{kTiny}),
-        make_case("volume-tiny", When::named_only, run_volume_case, VolumeCase{kTiny}),
     };
 }
 

@@ -4,10 +4,10 @@
 
 #include "platform/machine/pool_memory.hpp"
 #include "rt_core/frame/frame.hpp"
+#include "tests/shared/loopback_link.hpp"
 #include "tests/shared/rig_recorder.hpp"
 #include "tests/shared/test_model.hpp"
 #include "transport/chunk_loader.hpp"
-#include "transport/loopback/loopback_link.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <deque>

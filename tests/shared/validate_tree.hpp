@@ -3,10 +3,11 @@
 #pragma once
 
 #include "rt_core/abtree/validate_tree.hpp"
-#include "tests/shared/volume_oracle.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -21,12 +22,11 @@ namespace tactus::test
 ///
 /// Boxes are recomputed bottom-up from the faces by separate arithmetic and must be equal bit for
 /// bit: the tree equals one refitted from scratch (invariant I6).
-template <typename Tree>
 class TreeOracle
 {
 public:
     /// Faults of a tree; `faces` are all that were added and not removed since.
-    [[nodiscard]] static std::vector<std::string> faults(const Tree& tree,
+    [[nodiscard]] static std::vector<std::string> faults(const AbTree& tree,
                                                          std::span<const ChangedFace> faces)
     {
         TreeOracle oracle(tree, faces);
@@ -35,18 +35,14 @@ public:
     }
 
 private:
-    using Box = typename Tree::Box;
-    using Node = typename Tree::Node;
-    using Boxes = VolumeOracle<typename Tree::Volume>;
-
     struct Subtree
     {
-        Box box;
+        Aabb box;
         bool coarse{false};
         bool exact{false};
     };
 
-    TreeOracle(const Tree& tree, std::span<const ChangedFace> faces) : tree_(tree)
+    TreeOracle(const AbTree& tree, std::span<const ChangedFace> faces) : tree_(tree)
     {
         for (const ChangedFace& face : faces)
         {
@@ -101,7 +97,7 @@ private:
 
     Subtree walk_node(std::uint32_t index)
     {
-        const Node& node = tree_.node(index);
+        const AbNode& node = tree_.node(index);
         Subtree subtree;
         for (std::uint32_t i = 0; i < kNodeChildren; ++i)
         {
@@ -119,7 +115,7 @@ private:
                   " has a wrong exact bit");
             subtree.coarse = subtree.coarse || below.coarse;
             subtree.exact = subtree.exact || below.exact;
-            Boxes::unite(subtree.box, below.box);
+            unite(subtree.box, below.box);
         }
         return subtree;
     }
@@ -142,14 +138,13 @@ private:
         subtree.coarse = largest != 0;
         if (largest != 0)
         {
-            subtree.box =
-                Boxes::grown(subtree.box, static_cast<long double>(error_in_quanta(largest)) *
-                                              static_cast<long double>(tree_.quantum_m()));
+            subtree.box = grown(subtree.box, static_cast<long double>(error_in_quanta(largest)) *
+                                                 static_cast<long double>(tree_.quantum_m()));
         }
         return subtree;
     }
 
-    void check_lane(std::uint32_t index, std::uint32_t lane, Box& box)
+    void check_lane(std::uint32_t index, std::uint32_t lane, Aabb& box)
     {
         const BlockSide& side = tree_.side(index);
         const std::uint32_t prim = side.prims[lane].value;
@@ -172,7 +167,7 @@ private:
                 check(block.coordinates[axis][row] == at, "prim ", prim, " corner ", corner,
                       " has moved");
             }
-            Boxes::widen(box, face.corners_m[corner]);
+            unite(box, {face.corners_m[corner], face.corners_m[corner]});
         }
         check_path(face);
     }
@@ -184,12 +179,41 @@ private:
                                    (std::uint64_t{face.face.value * 0x9E37'79B9U} << 1U);
         for (const auto& [index, child] : path_)
         {
-            const Node& node = tree_.node(index);
+            const AbNode& node = tree_.node(index);
             check(node.holds(path), "face ", face.face.value, " is below foreign node ", index);
             check(node.child_of((path >> node.shift) & 7U) == child, "face ", face.face.value,
                   " is below a wrong child of node ", index);
         }
     }
+
+    static void unite(Aabb& box, const Aabb& other)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            box.low[axis] = std::min(box.low[axis], other.low[axis]);
+            box.high[axis] = std::max(box.high[axis], other.high[axis]);
+        }
+    }
+
+    /// Grows a box by the least float that is not below `error_m`, and rounds outwards.
+    [[nodiscard]] static Aabb grown(Aabb box, long double error_m)
+    {
+        const auto margin = static_cast<long double>(float_above(error_m));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+            box.low[axis] = float_below(static_cast<long double>(box.low[axis]) - margin);
+            box.high[axis] = float_above(static_cast<long double>(box.high[axis]) + margin);
+        }
+        return box;
+    }
+    [[nodiscard]] static float float_below(long double value)
+    {
+        const auto nearest = static_cast<float>(value);
+        return static_cast<long double>(nearest) > value
+                   ? std::nextafter(nearest, -std::numeric_limits<float>::infinity())
+                   : nearest;
+    }
+    [[nodiscard]] static float float_above(long double value) { return -float_below(-value); }
 
     struct Step
     {
@@ -197,7 +221,7 @@ private:
         std::uint32_t child{0};
     };
 
-    const Tree& tree_;
+    const AbTree& tree_;
     std::map<std::uint32_t, const ChangedFace*> faces_;
     std::set<std::uint32_t> seen_;
     std::vector<Step> path_;
@@ -205,14 +229,13 @@ private:
 };
 
 /// First few faults as one text; empty if the tree is sound and holds those faces.
-template <typename Tree>
-[[nodiscard]] std::string tree_faults(const Tree& tree, std::span<const ChangedFace> faces)
+[[nodiscard]] inline std::string tree_faults(const AbTree& tree, std::span<const ChangedFace> faces)
 {
     if (const Flaw flaw = find_flaw(tree); !flaw.is_none())
     {
         return text_of(flaw).data();
     }
-    const std::vector<std::string> faults = TreeOracle<Tree>::faults(tree, faces);
+    const std::vector<std::string> faults = TreeOracle::faults(tree, faces);
     std::string text;
     for (std::size_t i = 0; i < std::min<std::size_t>(faults.size(), 8); ++i)
     {

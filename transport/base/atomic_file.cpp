@@ -6,9 +6,11 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <span>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
@@ -330,6 +332,23 @@ void AtomicFile::discard() noexcept
 Refusal AtomicFile::error() const
 {
     return refuse(name_, std::strerror(errno));
+}
+
+std::optional<Refusal> probe_output(const std::string& path)
+{
+    return path.empty() ? std::nullopt : AtomicFile::probe(path);
+}
+
+std::optional<Refusal> write_text(const std::string& text, const std::string& path)
+{
+    auto file = AtomicFile::create(path);
+    if (!file)
+    {
+        return file.error();
+    }
+    auto done = file.value().write(std::as_bytes(std::span(text)));
+    done = done ? file.value().commit() : done;
+    return done ? std::nullopt : std::optional(done.error());
 }
 
 } // namespace tactus

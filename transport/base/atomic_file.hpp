@@ -72,4 +72,11 @@ private:
     std::uint64_t end_{0};
 };
 
+/// Tests, before a long run, whether a file can be written; returns the reason if not. An empty
+/// path passes.
+[[nodiscard]] std::optional<Refusal> probe_output(const std::string& path);
+
+/// Writes a text file as a whole or not at all; returns the reason if it fails.
+[[nodiscard]] std::optional<Refusal> write_text(const std::string& text, const std::string& path);
+
 } // namespace tactus

@@ -3,12 +3,12 @@
 #include "transport/base/number_form.hpp"
 
 #include "transport/base/counted.hpp"
-#include "transport/base/numbers.hpp"
 #include "transport/base/printable.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -199,6 +199,14 @@ Result<std::vector<double>, Refusal> read_numbers(std::string_view value, const 
         return refusal("the value has " + counted(words.size(), "number"));
     }
     return numbers;
+}
+
+std::optional<double> parse_number(std::string_view text)
+{
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool is_whole = error == std::errc{} && end == text.data() + text.size();
+    return is_whole && std::abs(value) < 1e300 ? std::optional(value) : std::nullopt;
 }
 
 } // namespace tactus

@@ -5,6 +5,7 @@
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -46,5 +47,8 @@ struct NumberForm
 /// Fault of one number, for example "R is 5, not in 1e-05 .. 1 m"; empty if `text` is in range.
 [[nodiscard]] std::string fault_of_number(std::string_view name, std::string_view text,
                                           const NumberRange& range);
+
+/// Finite number that the whole `text` represents; none for any other text.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
 } // namespace tactus

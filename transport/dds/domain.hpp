@@ -5,7 +5,6 @@
 #include "rt_core/base/result.hpp"
 #include "transport/base/network_security.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/dds/disposal.hpp"
 #include "transport/dds/entity.hpp"
 #include "transport/dds/participants.hpp"
 

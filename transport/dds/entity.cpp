@@ -25,4 +25,51 @@ Entity::~Entity()
     }
 }
 
+Disposal::~Disposal()
+{
+    {
+        const std::lock_guard lock(mutex_);
+        is_over_ = true;
+    }
+    has_news_.notify_one();
+    if (thread_.joinable())
+    {
+        thread_.join();
+    }
+}
+
+void Disposal::dispose(std::shared_ptr<void> owner)
+{
+    if (owner == nullptr)
+    {
+        return;
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_.push_back(std::move(owner));
+        if (!thread_.joinable())
+        {
+            thread_ = std::thread([this] { run(); });
+        }
+    }
+    has_news_.notify_one();
+}
+
+void Disposal::run()
+{
+    std::unique_lock lock(mutex_);
+    for (;;)
+    {
+        has_news_.wait(lock, [this] { return is_over_ || !waiting_.empty(); });
+        if (waiting_.empty())
+        {
+            return;
+        }
+        std::vector<std::shared_ptr<void>> batch = std::exchange(waiting_, {});
+        lock.unlock();
+        batch.clear();
+        lock.lock();
+    }
+}
+
 } // namespace tactus::dds

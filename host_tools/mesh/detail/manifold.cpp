@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/mesh/detail/manifold.hpp"
 
-#include "host_tools/mesh/detail/clean.hpp"
+#include "host_tools/mesh/detail/prepare_steps.hpp"
 
 #include <algorithm>
 #include <span>

@@ -2,10 +2,13 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/detail/polygon_sink.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
+#include "host_tools/mesh/triangle_mesh.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +17,34 @@
 /// file's name and checks the properties common to all formats.
 namespace tactus::detail
 {
+
+/// Converts polygons to triangles. A polygon with n corners becomes n - 2 consecutive faces, in the
+/// order of the input. Formats may use vertices before they define their positions, so polygons are
+/// fans at first; finish() cuts those again that a fan does not fit.
+class PolygonSink
+{
+public:
+    explicit PolygonSink(TriangleMesh& mesh) : mesh_(mesh) {}
+
+    /// Adds a polygon. If there are more than three corners, adjacent equal corners count once.
+    void add(std::span<const std::uint32_t> corners);
+
+    /// Cuts the polygons; every vertex must have its position, and the corners must be vertices.
+    /// Adds a note for polygons that have too few corners or cross themselves.
+    void finish(std::vector<std::string>& notes);
+
+private:
+    struct Fan
+    {
+        std::size_t first_face;
+        std::uint32_t corners;
+    };
+
+    TriangleMesh& mesh_;
+    std::vector<std::uint32_t> corners_;
+    std::vector<Fan> fans_;    ///< Polygons with more than three corners.
+    std::uint64_t smaller_{0}; ///< Number of polygons with fewer than three corners.
+};
 
 [[nodiscard]] Result<MeshFile, Refusal> read_ply(std::string_view bytes);
 [[nodiscard]] Result<MeshFile, Refusal> read_obj(std::string_view text);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/mesh/detail/stitch.hpp"
-
+#include "host_tools/mesh/detail/prepare_steps.hpp"
 #include "host_tools/mesh/mesh_places.hpp"
 
 #include <algorithm>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/scene/detail/gltf_mesh.hpp"
-
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/detail/gltf_accessor.hpp"
+#include "host_tools/scene/detail/gltf_nodes.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/base/counted.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/shapes/detail/icosphere.hpp"
+#include "host_tools/shapes/detail/surfaces.hpp"
 
 #include <array>
 #include <cmath>

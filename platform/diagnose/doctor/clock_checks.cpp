@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/doctor/clock_checks.hpp"
+#include "platform/diagnose/doctor/checks.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/doctor/network_checks.hpp"
-
+#include "platform/diagnose/doctor/checks.hpp"
 #include "platform/diagnose/doctor/dds_configuration.hpp"
 
 #include <fmt/format.h>

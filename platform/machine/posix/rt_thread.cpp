@@ -6,14 +6,18 @@
 #include "platform/machine/posix/linux_extras.hpp"
 #include "platform/machine/posix/memory_lock.hpp"
 #include "platform/machine/posix/posix_error.hpp"
-#include "platform/machine/posix/thread_stack.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
+#include <cstring>
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
+#include <span>
+#include <sys/mman.h>
+#include <unistd.h>
 #include <utility>
 
 namespace tactus
@@ -21,6 +25,52 @@ namespace tactus
 
 namespace
 {
+
+/// Memory for one thread's stack, every page touched. A page without access below it lets an
+/// overflow stop the process instead of writing elsewhere.
+class ThreadStack
+{
+public:
+    /// Rounds up to whole pages. If the system has no memory left, memory() is empty: check it.
+    explicit ThreadStack(std::size_t bytes) noexcept;
+    ThreadStack(const ThreadStack&) = delete;
+    ThreadStack& operator=(const ThreadStack&) = delete;
+    ~ThreadStack();
+
+    [[nodiscard]] std::span<std::byte> memory() const noexcept { return memory_; }
+
+private:
+    std::span<std::byte> mapped_;
+    std::span<std::byte> memory_;
+};
+
+ThreadStack::ThreadStack(std::size_t bytes) noexcept
+{
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    const std::size_t usable = (bytes + page - 1) / page * page;
+    void* start =
+        mmap(nullptr, usable + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (start == MAP_FAILED)
+    {
+        return;
+    }
+    mapped_ = {static_cast<std::byte*>(start), usable + page};
+    if (mprotect(start, page, PROT_NONE) != 0)
+    {
+        return;
+    }
+    memory_ = mapped_.subspan(page);
+    std::memset(memory_.data(), 0, memory_.size());
+}
+
+ThreadStack::~ThreadStack()
+{
+    if (!mapped_.empty())
+    {
+        // munmap() of a whole mapping can't fail.
+        static_cast<void>(munmap(mapped_.data(), mapped_.size()));
+    }
+}
 
 /// Owns a pthread_attr_t. Its calls fail only for arguments that were checked before.
 class ThreadAttributes
@@ -147,7 +197,7 @@ struct RtThread::Running
 
     RtThreadOptions options;
     std::function<void()> body;
-    posix::ThreadStack stack;
+    ThreadStack stack;
     pthread_t thread{};
     bool joinable{false};
     RtThreadReport report;

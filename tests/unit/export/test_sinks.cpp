@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/export/csv_sink.hpp"
-#include "platform/export/json_sink.hpp"
+#include "platform/export/field_sink.hpp"
 #include "rt_core/math/infinity.hpp"
 
 #include <gtest/gtest.h>

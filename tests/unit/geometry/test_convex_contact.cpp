@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/machine/allocation_counter.hpp"
 #include "rt_core/geometry/box_triangle.hpp"
-#include "rt_core/geometry/round_triangle.hpp"
 #include "rt_core/query/convex_contact.hpp"
+#include "tests/shared/round_triangle.hpp"
 #include "tests/unit/geometry/convex_checks.hpp"
 #include "tests/unit/geometry/grid.hpp"
 #include "tests/unit/geometry/integer_axes.hpp"

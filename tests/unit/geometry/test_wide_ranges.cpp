@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/geometry/box_triangle.hpp"
-#include "rt_core/geometry/round_triangle.hpp"
 #include "rt_core/geometry/segment_triangle.hpp"
 #include "rt_core/geometry/triangle_triangle.hpp"
+#include "tests/shared/round_triangle.hpp"
 #include "tests/shared/shape_scenes.hpp"
 
 #include <gtest/gtest.h>

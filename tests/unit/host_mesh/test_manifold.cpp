@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/mesh/detail/manifold.hpp"
+#include "host_tools/mesh/detail/prepare_steps.hpp"
 #include "tests/unit/host_mesh/support.hpp"
 
 #include <gtest/gtest.h>

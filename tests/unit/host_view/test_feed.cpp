@@ -4,7 +4,6 @@
 /// Both forms of the feed against the struct for programs that read it (docs/examples).
 
 #include "host_tools/spm_view/feed.hpp"
-#include "host_tools/spm_view/feed_sender.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "tests/unit/host_view/live_rig.hpp"
 #include "transport/content_hash.hpp"

@@ -4,7 +4,7 @@
 #include "platform/devices/wrapped_device.hpp"
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/loop/assertion_brake.hpp"
-#include "platform/program/leave_with.hpp"
+#include "platform/program/run_program.hpp"
 #include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
 #include "rt_core/base/assert.hpp"

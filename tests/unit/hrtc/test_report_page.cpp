@@ -3,8 +3,6 @@
 #include "platform/options/options.hpp"
 #include "platform/plot/markup.hpp"
 #include "platform/report/report.hpp"
-#include "platform/report/report_page.hpp"
-#include "platform/report/report_words.hpp"
 #include "tests/shared/count_of.hpp"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,6 @@
 /// I6: boxes hold their faces inflated by e, and equal those of a tree refitted from scratch.
 
 #include "tests/unit/rt_core/tree_support.hpp"
-#include "tests/unit/rt_core/tree_volumes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,12 +27,11 @@ ChangedFace unit_face(std::uint32_t prim, std::uint32_t bucket, std::uint32_t ve
 
 /// Random inserts, updates, removals and replacements in batches, a refit and a full check after
 /// each.
-template <typename Tree>
 void run_random_changes(const FaceStyle& style, const TreeCapacities& capacities,
                         std::uint64_t own_seed, int batches)
 {
     Random random(own_seed);
-    BasicTreeRig<Tree> rig(capacities);
+    TreeRig rig(capacities);
     std::uint32_t next_face = 0;
     std::uint32_t fullness = 50;
     for (int batch = 0; batch < batches; ++batch)
@@ -64,20 +62,13 @@ void run_random_changes(const FaceStyle& style, const TreeCapacities& capacities
     }
 }
 
-template <typename Tree>
-class AbTreeOfAnyVolume : public testing::Test
-{
-};
-
-TYPED_TEST_SUITE(AbTreeOfAnyVolume, TreesOfAllVolumes, VolumeNames);
-
 } // namespace
 
-TYPED_TEST(AbTreeOfAnyVolume, an_empty_tree_has_no_root_and_needs_no_refit)
+TEST(AbTree, an_empty_tree_has_no_root_and_needs_no_refit)
 {
-    BasicTreeRig<TypeParam> rig({4, 64, 64});
+    TreeRig rig({4, 64, 64});
 
-    const typename TypeParam::RefitWork work = rig.sut->refit();
+    const AbTree::RefitWork work = rig.sut->refit();
 
     EXPECT_TRUE(rig.sut->root().is_none());
     EXPECT_TRUE(rig.sut->is_complete());
@@ -85,9 +76,9 @@ TYPED_TEST(AbTreeOfAnyVolume, an_empty_tree_has_no_root_and_needs_no_refit)
     EXPECT_EQ(rig.faults(), "");
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, one_face_is_one_block_and_leaves_nothing_behind)
+TEST(AbTree, one_face_is_one_block_and_leaves_nothing_behind)
 {
-    BasicTreeRig<TypeParam> rig({4, 64, 64});
+    TreeRig rig({4, 64, 64});
 
     rig.put(unit_face(2, 5, 0));
     EXPECT_EQ(rig.sut->status(rig.sut->root()), NodeStatus::deformed);
@@ -106,10 +97,9 @@ TYPED_TEST(AbTreeOfAnyVolume, one_face_is_one_block_and_leaves_nothing_behind)
     EXPECT_EQ(rig.sut->blocks_used_max(), 1U);
 }
 
-TYPED_TEST(AbTreeOfAnyVolume,
-           sixteen_faces_over_few_vertices_are_one_block_and_the_seventeenth_splits_it)
+TEST(AbTree, sixteen_faces_over_few_vertices_are_one_block_and_the_seventeenth_splits_it)
 {
-    BasicTreeRig<TypeParam> rig({32, 64, 64});
+    TreeRig rig({32, 64, 64});
     for (std::uint32_t prim = 0; prim < 16; ++prim)
     {
         rig.put(unit_face(prim, 1, prim % 4));
@@ -127,9 +117,9 @@ TYPED_TEST(AbTreeOfAnyVolume,
     EXPECT_GE(rig.sut->nodes_used(), 1U);
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, sixteen_faces_over_48_vertices_are_spread_over_blocks)
+TEST(AbTree, sixteen_faces_over_48_vertices_are_spread_over_blocks)
 {
-    BasicTreeRig<TypeParam> rig({32, 64, 64});
+    TreeRig rig({32, 64, 64});
     for (std::uint32_t prim = 0; prim < 16; ++prim)
     {
         rig.put(unit_face(prim, 1, prim));
@@ -140,25 +130,25 @@ TYPED_TEST(AbTreeOfAnyVolume, sixteen_faces_over_48_vertices_are_spread_over_blo
     EXPECT_GE(rig.sut->blocks_used(), 4U) << "a block holds 16 vertices, so 5 such faces";
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, refit_visits_nothing_when_nothing_changed)
+TEST(AbTree, refit_visits_nothing_when_nothing_changed)
 {
     Random random(30);
-    BasicTreeRig<TypeParam> rig({300, 400, 400});
+    TreeRig rig({300, 400, 400});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(random_face(random, face_styles()[0], prim, prim));
     }
     rig.sut->refit();
 
-    const typename TypeParam::RefitWork work = rig.sut->refit();
+    const AbTree::RefitWork work = rig.sut->refit();
 
     EXPECT_EQ(work.blocks + work.nodes, 0U);
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, refit_of_one_unchanged_box_stops_at_its_block)
+TEST(AbTree, refit_of_one_unchanged_box_stops_at_its_block)
 {
     Random random(31);
-    BasicTreeRig<TypeParam> rig({300, 400, 400});
+    TreeRig rig({300, 400, 400});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(random_face(random, face_styles()[1], prim, prim));
@@ -166,17 +156,17 @@ TYPED_TEST(AbTreeOfAnyVolume, refit_of_one_unchanged_box_stops_at_its_block)
     rig.sut->refit();
     rig.put(rig.face(17));
 
-    const typename TypeParam::RefitWork work = rig.sut->refit();
+    const AbTree::RefitWork work = rig.sut->refit();
 
     EXPECT_EQ(work.blocks, 1U);
     EXPECT_EQ(work.nodes, 0U);
     EXPECT_EQ(rig.faults(), "");
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, refit_leaves_unmarked_nodes_untouched)
+TEST(AbTree, refit_leaves_unmarked_nodes_untouched)
 {
     Random random(32);
-    BasicTreeRig<TypeParam> rig({300, 400, 400});
+    TreeRig rig({300, 400, 400});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(random_face(random, face_styles()[0], prim, prim));
@@ -187,7 +177,7 @@ TYPED_TEST(AbTreeOfAnyVolume, refit_leaves_unmarked_nodes_untouched)
     moved.corners_m[0][1] += 50.0F;
     rig.put(moved);
 
-    const typename TypeParam::RefitWork work = rig.sut->refit();
+    const AbTree::RefitWork work = rig.sut->refit();
 
     std::uint32_t depth = 0;
     const std::uint32_t leaf = rig.sut->leaf_of({17});
@@ -202,27 +192,27 @@ TYPED_TEST(AbTreeOfAnyVolume, refit_leaves_unmarked_nodes_untouched)
     EXPECT_EQ(rig.faults(), "");
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, random_changes_keep_it_sound_in_every_style)
+TEST(AbTree, random_changes_keep_it_sound_in_every_style)
 {
     for (const FaceStyle& style : face_styles())
     {
-        run_random_changes<TypeParam>(style, {400, 600, 600}, 33, 120);
+        run_random_changes(style, {400, 600, 600}, 33, 120);
     }
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, random_changes_keep_it_sound_while_pools_run_out)
+TEST(AbTree, random_changes_keep_it_sound_while_pools_run_out)
 {
     for (const FaceStyle& style : face_styles())
     {
-        run_random_changes<TypeParam>(style, {300, 40, 30}, 34, 150);
-        run_random_changes<TypeParam>(style, {300, 24, 200}, 35, 100);
-        run_random_changes<TypeParam>(style, {300, 200, 22}, 36, 100);
+        run_random_changes(style, {300, 40, 30}, 34, 150);
+        run_random_changes(style, {300, 24, 200}, 35, 100);
+        run_random_changes(style, {300, 200, 22}, 36, 100);
     }
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, pools_below_the_reserve_place_nothing_and_say_so)
+TEST(AbTree, pools_below_the_reserve_place_nothing_and_say_so)
 {
-    BasicTreeRig<TypeParam> rig({4, TypeParam::kReserve - 1, 64});
+    TreeRig rig({4, AbTree::kReserve - 1, 64});
 
     rig.put(unit_face(0, 1, 0));
     rig.sut->refit();
@@ -234,9 +224,9 @@ TYPED_TEST(AbTreeOfAnyVolume, pools_below_the_reserve_place_nothing_and_say_so)
     EXPECT_EQ(rig.faults(), "");
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, faces_without_a_place_find_one_when_others_have_left)
+TEST(AbTree, faces_without_a_place_find_one_when_others_have_left)
 {
-    BasicTreeRig<TypeParam> rig({300, 30, 30});
+    TreeRig rig({300, 30, 30});
     for (std::uint32_t prim = 0; prim < 300; ++prim)
     {
         rig.put(unit_face(prim, prim * 0x0100'0193U, prim));
@@ -256,12 +246,12 @@ TYPED_TEST(AbTreeOfAnyVolume, faces_without_a_place_find_one_when_others_have_le
     EXPECT_EQ(rig.faults(), "");
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, removing_all_faces_gives_every_block_and_node_back)
+TEST(AbTree, removing_all_faces_gives_every_block_and_node_back)
 {
     for (const FaceStyle& style : face_styles())
     {
         Random random(37);
-        BasicTreeRig<TypeParam> rig({500, 700, 700});
+        TreeRig rig({500, 700, 700});
         for (std::uint32_t prim = 0; prim < 500; ++prim)
         {
             rig.put(random_face(random, style, prim, prim));
@@ -276,12 +266,12 @@ TYPED_TEST(AbTreeOfAnyVolume, removing_all_faces_gives_every_block_and_node_back
         EXPECT_EQ(rig.sut->blocks_used(), 0U) << style.name;
         EXPECT_EQ(rig.sut->nodes_used(), 0U) << style.name;
         EXPECT_TRUE(rig.sut->root().is_none()) << style.name;
-        EXPECT_TRUE(rig.sut->has_room_for(700 - TypeParam::kReserve)) << style.name;
-        EXPECT_FALSE(rig.sut->has_room_for(700 - TypeParam::kReserve + 1)) << style.name;
+        EXPECT_TRUE(rig.sut->has_room_for(700 - AbTree::kReserve)) << style.name;
+        EXPECT_FALSE(rig.sut->has_room_for(700 - AbTree::kReserve + 1)) << style.name;
     }
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
+TEST(AbTree, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
 {
     // Odd multiplier: ids 2^31 apart differ in the highest mixed bit only, ids chosen by the
     // inverse in the lowest only.
@@ -290,7 +280,7 @@ TYPED_TEST(AbTreeOfAnyVolume, faces_whose_paths_differ_only_in_the_last_bit_are_
     {
         inverse *= 2U - 0x9E37'79B9U * inverse;
     }
-    BasicTreeRig<TypeParam> rig({64, 128, 128});
+    TreeRig rig({64, 128, 128});
     for (std::uint32_t prim = 0; prim < 40; ++prim)
     {
         ChangedFace face = unit_face(prim, 3, prim);
@@ -302,11 +292,11 @@ TYPED_TEST(AbTreeOfAnyVolume, faces_whose_paths_differ_only_in_the_last_bit_are_
     EXPECT_TRUE(rig.sut->is_complete());
 }
 
-TYPED_TEST(AbTreeOfAnyVolume, the_order_of_insertion_does_not_change_the_roots_box)
+TEST(AbTree, the_order_of_insertion_does_not_change_the_roots_box)
 {
     Random random(38);
-    BasicTreeRig<TypeParam> forward({200, 400, 400});
-    BasicTreeRig<TypeParam> backward({200, 400, 400});
+    TreeRig forward({200, 400, 400});
+    TreeRig backward({200, 400, 400});
     for (std::uint32_t prim = 0; prim < 200; ++prim)
     {
         forward.put(random_face(random, face_styles()[1], prim, prim));

@@ -20,12 +20,11 @@ namespace tactus::test
 
 inline constexpr float kTreeQuantum = 0x1p-10F;
 
-/// AB-Tree over any volume, with its expected faces by prim.
-template <typename Tree>
-class BasicTreeRig
+/// AB-Tree with its expected faces by prim.
+class TreeRig
 {
 public:
-    explicit BasicTreeRig(const TreeCapacities& capacities)
+    explicit TreeRig(const TreeCapacities& capacities)
         : memory_(required(capacities)), faces_(capacities.prims)
     {
         Arena arena(memory_.bytes());
@@ -82,19 +81,17 @@ private:
     static std::size_t required(const TreeCapacities& capacities)
     {
         Arena arena = Arena::measuring();
-        const typename Tree::Pool pool(arena, capacities);
+        const TreePool pool(arena, capacities);
         return arena.used();
     }
 
     ArenaMemory memory_;
-    std::optional<typename Tree::Pool> pool_;
+    std::optional<TreePool> pool_;
     std::vector<ChangedFace> faces_;
 
 public:
-    std::optional<Tree> sut;
+    std::optional<AbTree> sut;
 };
-
-using TreeRig = BasicTreeRig<AbTree>;
 
 /// Greatest error of three random faces.
 inline ErrorCode large_error(Random& random, std::span<const ChangedFace> faces)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "tests/shared/loopback_link.hpp"
 #include "tests/unit/transport/queue_side.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/chunk_loader.hpp"
-#include "transport/loopback/loopback_link.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/dds/credit.hpp"
 #include "transport/dds/model_pieces.hpp"
+#include "transport/dds/piece_exchange.hpp"
 #include "transport/dds/piece_frame.hpp"
 #include "transport/dds/request_queue.hpp"
 
