@@ -239,7 +239,8 @@ void copy_counts(const From& from, To& to)
     to.faults_seen = from.faults_seen;
 }
 
-/// Telemetry in a sample; none if a name is invalid, a number impossible, or a count too large.
+} // namespace
+
 std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
 {
     WatchedController news;
@@ -297,8 +298,6 @@ std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
     }
     return news;
 }
-
-} // namespace
 
 Result<std::unique_ptr<TelemetryWriter>, Refusal>
 TelemetryWriter::create(const Domain& domain, std::string controller_name,
