@@ -44,4 +44,9 @@ std::string printable_line(std::string_view text)
     return result;
 }
 
+bool is_printable_line(std::string_view text)
+{
+    return printable_line(text) == text;
+}
+
 } // namespace tactus

@@ -25,4 +25,7 @@ namespace tactus
 /// and changes of text direction. Other characters stay, since file names are in UTF-8.
 [[nodiscard]] std::string printable_line(std::string_view text);
 
+/// True if printable_line() changes nothing.
+[[nodiscard]] bool is_printable_line(std::string_view text);
+
 } // namespace tactus

@@ -59,7 +59,7 @@ std::optional<RefinementStateTool> tool_from(const tactus_v5_RefinementStateTool
     const std::string_view shape = text_of(wire.shape);
     constexpr std::uint32_t known = (1U << kForceOffs) - 1;
     if (wire.state >= kSafetyStates || (wire.causes & ~known) != 0 || !is_amount(wire.radius_m) ||
-        !std::ranges::all_of(shape, is_printable))
+        !is_printable_line(shape))
     {
         return std::nullopt;
     }

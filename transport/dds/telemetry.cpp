@@ -184,7 +184,7 @@ std::optional<ObjectTelemetry> from_wire(const tactus_v5_ObjectTelemetry& wire)
     // Rounding may place an object just beyond kPoseReachMax_m.
     const bool is_sound = pose || pose.error() == PoseRefusal::translation;
     const std::string_view name = text_of(wire.name);
-    if (!is_sound || wire.number >= kMaxObjects || !std::ranges::all_of(name, is_printable))
+    if (!is_sound || wire.number >= kMaxObjects || !is_printable_line(name))
     {
         return std::nullopt;
     }
