@@ -160,7 +160,7 @@ public:
     {
         auto sample = read<Sample>();
         visit_sequences(sample, [this](auto& sequence, std::size_t bound)
-                        { read_sequence(sequence, bound); });
+                        { this->read_sequence(sequence, bound); });
         return sample;
     }
 
