@@ -98,7 +98,7 @@ struct RefinementStateTool
     SafetyState state{SafetyState::reset};
     /// Reasons why the output is below the force that the frame computed.
     ForceOff causes{ForceOff::none};
-    std::string shape; ///< Shape in the form of hrtc's --tool option; printable ASCII.
+    std::string shape; ///< Shape in the form of hrtc's --tool option; a printable_line().
     double radius_m{0.0};
     bool begins_inside{false}; ///< True if the tool began inside a closed object.
 

@@ -22,14 +22,14 @@ Result<Pose, PoseRefusal> checked_pose(const Pose& pose) noexcept
     {
         return PoseRefusal::rotation;
     }
+    if (pose.scale < kPoseScaleMin || pose.scale > kPoseScaleMax)
+    {
+        return PoseRefusal::scale;
+    }
     if (std::ranges::any_of(pose.translation_m,
                             [](double at_m) { return std::abs(at_m) > kPoseReachMax_m; }))
     {
         return PoseRefusal::translation;
-    }
-    if (pose.scale < kPoseScaleMin || pose.scale > kPoseScaleMax)
-    {
-        return PoseRefusal::scale;
     }
     Pose unit = pose;
     std::ranges::transform(q, unit.rotation.begin(), [&](double part) { return part / length; });

@@ -39,7 +39,8 @@ inline constexpr std::size_t kPoseRefusals = 5;
 inline constexpr std::array<const char*, kPoseRefusals> kPoseRefusalNames{
     "not_newer", "not_finite", "rotation", "translation", "scale"};
 
-/// Pose with its rotation scaled to length 1, or the reason why the pose is refused.
+/// Pose with its rotation scaled to length 1, or the reason why the pose is refused. `translation`
+/// is the reason only if all else is in range.
 [[nodiscard]] Result<Pose, PoseRefusal> checked_pose(const Pose& pose) noexcept;
 
 } // namespace tactus

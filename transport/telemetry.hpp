@@ -105,7 +105,7 @@ struct ObjectTelemetry
     std::uint64_t server_epoch{0};
     std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
     std::uint32_t number{0}; ///< Number of the object on the controller.
-    std::string name;        ///< Name of the object or else of its model; printable ASCII.
+    std::string name;        ///< Name of the object or else of its model; a printable_line().
     ContentHash model{};
     Pose pose; ///< Pose of the source mesh in the world.
 

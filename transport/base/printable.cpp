@@ -119,4 +119,9 @@ bool is_letter(std::string_view character) noexcept
                });
 }
 
+bool is_printable_line(std::string_view text)
+{
+    return printable_line(text) == text;
+}
+
 } // namespace tactus

@@ -25,6 +25,9 @@ namespace tactus
 /// and changes of text direction. Other characters stay, since file names are in UTF-8.
 [[nodiscard]] std::string printable_line(std::string_view text);
 
+/// True if printable_line() changes nothing.
+[[nodiscard]] bool is_printable_line(std::string_view text);
+
 /// Bytes of the first character, 1 to 4; 0 if the text is empty or does not begin with UTF-8 (RFC
 /// 3629).
 [[nodiscard]] std::size_t character_bytes(std::string_view text) noexcept;

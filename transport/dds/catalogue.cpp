@@ -56,6 +56,25 @@ std::string list_of(const std::vector<std::string>& names)
 
 } // namespace
 
+std::optional<Catalogue::Offer> offer_from(const tactus_v5_CatalogueEntry& entry)
+{
+    const std::string name(text_of(entry.name));
+    const std::string scene(text_of(entry.scene));
+    if (!is_valid_name(name) || !(scene.empty() || is_valid_name(scene)))
+    {
+        return std::nullopt;
+    }
+    return Catalogue::Offer{name,
+                            scene,
+                            hash_from(entry.model_hash),
+                            entry.server_epoch,
+                            entry.model,
+                            entry.faces,
+                            entry.header_bytes,
+                            entry.base_bytes,
+                            std::min(entry.edit_room, kMaxAddedFaces)};
+}
+
 Result<Catalogue, Refusal> Catalogue::create(const Domain& domain, Log log, std::size_t room)
 {
     auto reader = make_reader(domain, Topic::catalogue, "");
@@ -135,22 +154,18 @@ void Catalogue::refresh()
         reader_.handle, kEntriesPerRefresh,
         [this](const tactus_v5_CatalogueEntry& entry, const dds_sample_info_t& info)
         {
-            const std::string name(text_of(entry.name));
-            const std::string scene(text_of(entry.scene));
             const auto refuse = [&](Refused reason)
             { participants_->refuse(info.publication_handle, reason, entry.model); };
             if (tells_end(info))
             {
                 on_end(entry.model, entry.server_epoch, info.publication_handle);
             }
-            else if (is_valid_name(name) && (scene.empty() || is_valid_name(scene)))
+            else if (auto offer = offer_from(entry))
             {
-                if (!try_add({name, scene, hash_from(entry.model_hash), entry.server_epoch,
-                              entry.model, entry.faces, entry.header_bytes, entry.base_bytes,
-                              std::min(entry.edit_room, kMaxAddedFaces),
-                              participants_->writer_of(info.publication_handle)
-                                  .value_or(ParticipantId{}),
-                              info.publication_handle}))
+                const auto server = participants_->writer_of(info.publication_handle);
+                offer->server = server.value_or(ParticipantId{});
+                offer->writer = info.publication_handle;
+                if (!try_add(*std::move(offer)))
                 {
                     refuse(Refused::model_room);
                 }

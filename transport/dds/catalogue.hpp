@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -137,5 +138,9 @@ private:
     std::uint64_t version_{0};
     std::chrono::steady_clock::time_point looked_{}; ///< Time of the last check of disputed offers.
 };
+
+/// Offer in a sample, without `server` and `writer`; none if the name of the model or of its scene
+/// is invalid.
+[[nodiscard]] std::optional<Catalogue::Offer> offer_from(const tactus_v5_CatalogueEntry& entry);
 
 } // namespace tactus::dds

@@ -28,7 +28,9 @@ constexpr auto kSumAfterRest = std::chrono::seconds(2);
 /// keeps the last of each controller.
 constexpr std::size_t kWaitingRequests = 256;
 
-EditRequest request_from(const tactus_v5_EditRequests& wire)
+} // namespace
+
+std::optional<EditRequest> request_from(const tactus_v5_EditRequests& wire)
 {
     EditRequest request;
     request.controller = controller_of(wire);
@@ -45,10 +47,14 @@ EditRequest request_from(const tactus_v5_EditRequests& wire)
     request.from = from_wire(wire.from);
     request.to = from_wire(wire.to);
     request.amount_m = wire.amount_m;
+    if (!is_sound(request))
+    {
+        return std::nullopt;
+    }
+    request.from = checked_pose(request.from).value();
+    request.to = checked_pose(request.to).value();
     return request;
 }
-
-} // namespace
 
 std::uint32_t most_sum_parts(const ModelCounts& counts, std::uint32_t room) noexcept
 {
@@ -223,19 +229,15 @@ void EditPublisher::read_requests()
                 {
                     return;
                 }
-                EditRequest request = request_from(wire);
-                if (state(request.model) == nullptr || !is_sound(request) ||
-                    !may_edit(request.controller))
+                auto request = request_from(wire);
+                if (!request || state(request->model) == nullptr || !may_edit(request->controller))
                 {
                     ++counters_.requests_refused;
-                    participants.refuse(info.publication_handle, Refused::edit_request,
-                                        request.model);
+                    participants.refuse(info.publication_handle, Refused::edit_request, wire.model);
                     return;
                 }
-                request.from = checked_pose(request.from).value();
-                request.to = checked_pose(request.to).value();
                 ++counters_.requests;
-                waiting_.push_back(std::move(request));
+                waiting_.push_back(*std::move(request));
             });
         if (taken < kTakenAtOnce)
         {

@@ -111,6 +111,9 @@ private:
     Counters counters_;
 };
 
+/// Request in a sample, with rotations of length 1; none if it is not sound (is_sound()).
+[[nodiscard]] std::optional<EditRequest> request_from(const tactus_v5_EditRequests& wire);
+
 /// Number of parts of the largest sum of such a model's edits, at most kMaxSumParts.
 [[nodiscard]] std::uint32_t most_sum_parts(const ModelCounts& counts, std::uint32_t room) noexcept;
 

@@ -29,6 +29,27 @@ constexpr std::size_t kEditsPerPoll = 64;
 
 } // namespace
 
+Result<EditContent, Refusal> edit_from(const tactus_v5_Edits& sample, const ModelHeader& header)
+{
+    const bool is_sum = sample.index >= kKeptEdits;
+    const auto most_parts = most_sum_parts(header.counts(), kMaxAddedFaces);
+    if (is_sum && sample.parts > most_parts)
+    {
+        return Refusal{
+            fmt::format("a sum has {} parts; at most {} are allowed", sample.parts, most_parts)};
+    }
+    auto edit =
+        decode_edit(std::as_bytes(std::span(sample.payload._buffer, sample.payload._length)),
+                    header, is_sum ? kMaxSumFaces : kMaxEditFaces);
+    const std::uint32_t revision = is_sum ? sample.part + 1 : sample.to;
+    if (edit && edit.value().revision != revision)
+    {
+        return Refusal{fmt::format("an edit has the number {} in a sample for {}",
+                                   edit.value().revision, revision)};
+    }
+    return edit;
+}
+
 EditReader::EditReader(const Domain& domain, const Catalogue& catalogue, std::vector<Model> models,
                        Log log)
     : domain_(domain), catalogue_(catalogue), log_(std::move(log))
@@ -174,26 +195,14 @@ std::optional<std::string> EditReader::take(Feed& feed, const tactus_v5_Edits& s
     {
         return std::nullopt;
     }
-    const auto most_parts = most_sum_parts(feed.model.header.counts(), kMaxAddedFaces);
-    if (is_sum && sample.parts > most_parts)
-    {
-        return fmt::format("a sum has {} parts; at most {} are allowed", sample.parts, most_parts);
-    }
     if (is_sum && feed.sum.parts != 0 && sample.to < feed.sum.to)
     {
         return std::nullopt; // A newer sum is under way.
     }
-    auto edit =
-        decode_edit(std::as_bytes(std::span(sample.payload._buffer, sample.payload._length)),
-                    feed.model.header, is_sum ? kMaxSumFaces : kMaxEditFaces);
+    auto edit = edit_from(sample, feed.model.header);
     if (!edit)
     {
         return edit.error().text;
-    }
-    if (edit.value().revision != (is_sum ? sample.part + 1 : sample.to))
-    {
-        return fmt::format("an edit has the number {} in a sample for {}", edit.value().revision,
-                           is_sum ? sample.part + 1 : sample.to);
     }
     if (!is_sum)
     {

@@ -23,6 +23,11 @@ struct tactus_v5_Edits; // idlc's type of a sample.
 namespace tactus::dds
 {
 
+/// Edit in a sample without a fault (fault_of()). The refusal is one line: more parts than a sum of
+/// the model can have, a payload that decode_edit() refuses, or another edit than stated.
+[[nodiscard]] Result<EditContent, Refusal> edit_from(const tactus_v5_Edits& sample,
+                                                     const ModelHeader& header);
+
 /// Receives and checks the edits of a controller's models from the servers that it follows. One
 /// thread, that of the catalogue; no call waits.
 ///

@@ -59,7 +59,7 @@ std::optional<RefinementStateTool> tool_from(const tactus_v5_RefinementStateTool
     const std::string_view shape = text_of(wire.shape);
     constexpr std::uint32_t known = (1U << kForceOffs) - 1;
     if (wire.state >= kSafetyStates || (wire.causes & ~known) != 0 || !is_amount(wire.radius_m) ||
-        !std::ranges::all_of(shape, is_printable))
+        !is_printable_line(shape))
     {
         return std::nullopt;
     }
@@ -148,63 +148,6 @@ std::optional<RefinementStateRegion> region_from(const tactus_v5_RefinementState
     return is_sound ? std::optional(region) : std::nullopt;
 }
 
-std::optional<RefinementState> front_from(const tactus_v5_RefinementState& sample)
-{
-    const bool is_in_bounds =
-        sample.tools._length <= kMaxTools && sample.models._length <= kMaxModels &&
-        sample.objects._length <= kMaxStateObjects && sample.chunks._length <= kMaxStatePages &&
-        sample.refined._length == sample.chunks._length &&
-        sample.requested._length <= kMaxStateRequests &&
-        sample.regions._length <= kMaxStateRegions && sample.sweep_begin <= sample.sweep_end &&
-        sample.sweep_end <= kMaxObjects;
-    if (!is_in_bounds || !is_valid_name(std::string(text_of(sample.controller_name))))
-    {
-        return std::nullopt;
-    }
-    RefinementState front;
-    copy_head(sample, front);
-    for (std::size_t i = 0; i < kBudgetOrder.size(); ++i)
-    {
-        front.budgets.*kBudgetOrder[i] = sample.budgets[i];
-    }
-    auto models = models_from(sample);
-    const auto is_sound = [](const FrontTimes& t)
-    { return is_amount(t.mean_ns) && is_amount(t.max_ns); };
-    if (!models || !std::ranges::all_of(front.times, is_sound))
-    {
-        return std::nullopt;
-    }
-    front.models = *std::move(models);
-    for (std::uint32_t i = 0; i < sample.tools._length; ++i)
-    {
-        auto tool = tool_from(sample.tools._buffer[i]);
-        if (!tool)
-        {
-            return std::nullopt;
-        }
-        front.tools.push_back(*std::move(tool));
-    }
-    for (std::uint32_t i = 0; i < sample.objects._length; ++i)
-    {
-        const auto object = object_from(sample.objects._buffer[i], sample.models._length);
-        if (!object)
-        {
-            return std::nullopt;
-        }
-        front.objects.push_back(*object);
-    }
-    for (std::uint32_t i = 0; i < sample.regions._length; ++i)
-    {
-        const auto region = region_from(sample.regions._buffer[i], sample.models._length);
-        if (!region)
-        {
-            return std::nullopt;
-        }
-        front.regions.push_back(*region);
-    }
-    return front;
-}
-
 tactus_v5_RefinementStateTool to_wire(const RefinementStateTool& tool)
 {
     tactus_v5_RefinementStateTool wire = {};
@@ -245,6 +188,64 @@ Sequence sequence_of(std::vector<Element>& elements)
 }
 
 } // namespace
+
+std::optional<SeenFront> front_from(const tactus_v5_RefinementState& sample)
+{
+    const bool is_in_bounds =
+        sample.tools._length <= kMaxTools && sample.models._length <= kMaxModels &&
+        sample.objects._length <= kMaxStateObjects && sample.chunks._length <= kMaxStatePages &&
+        sample.refined._length == sample.chunks._length &&
+        sample.requested._length <= kMaxStateRequests &&
+        sample.regions._length <= kMaxStateRegions && sample.sweep_begin <= sample.sweep_end &&
+        sample.sweep_end <= kMaxObjects;
+    if (!is_in_bounds || !is_valid_name(std::string(text_of(sample.controller_name))))
+    {
+        return std::nullopt;
+    }
+    SeenFront seen{controller_of(sample), sample.serial, {}};
+    RefinementState& front = seen.front;
+    copy_head(sample, front);
+    for (std::size_t i = 0; i < kBudgetOrder.size(); ++i)
+    {
+        front.budgets.*kBudgetOrder[i] = sample.budgets[i];
+    }
+    auto models = models_from(sample);
+    const auto is_sound = [](const FrontTimes& t)
+    { return is_amount(t.mean_ns) && is_amount(t.max_ns); };
+    if (!models || !std::ranges::all_of(front.times, is_sound))
+    {
+        return std::nullopt;
+    }
+    front.models = *std::move(models);
+    for (std::uint32_t i = 0; i < sample.tools._length; ++i)
+    {
+        auto tool = tool_from(sample.tools._buffer[i]);
+        if (!tool)
+        {
+            return std::nullopt;
+        }
+        front.tools.push_back(*std::move(tool));
+    }
+    for (std::uint32_t i = 0; i < sample.objects._length; ++i)
+    {
+        const auto object = object_from(sample.objects._buffer[i], sample.models._length);
+        if (!object)
+        {
+            return std::nullopt;
+        }
+        front.objects.push_back(*object);
+    }
+    for (std::uint32_t i = 0; i < sample.regions._length; ++i)
+    {
+        const auto region = region_from(sample.regions._buffer[i], sample.models._length);
+        if (!region)
+        {
+            return std::nullopt;
+        }
+        front.regions.push_back(*region);
+    }
+    return seen;
+}
 
 Result<std::unique_ptr<RefinementStateWriter>, Refusal>
 RefinementStateWriter::create(const Domain& domain, std::string controller_name)
@@ -348,15 +349,8 @@ RefinementStateReader::RefinementStateReader(Participants& participants, Endpoin
 
 void RefinementStateReader::poll()
 {
-    refused_ += take_newest<tactus_v5_RefinementState>(
-        reader_, participants_, kMaxSeen, fronts_,
-        [](const tactus_v5_RefinementState& sample) -> std::optional<SeenFront>
-        {
-            auto front = front_from(sample);
-            return front ? std::optional<SeenFront>(
-                               {controller_of(sample), sample.serial, *std::move(front)})
-                         : std::nullopt;
-        });
+    refused_ += take_newest<tactus_v5_RefinementState>(reader_, participants_, kMaxSeen, fronts_,
+                                                       front_from);
 }
 
 } // namespace tactus::dds

@@ -10,8 +10,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+struct tactus_v5_RefinementState; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -53,6 +56,10 @@ struct SeenFront
     /// True if any program ended this controller's instance in DDS; poll() then checks its writer.
     bool is_disputed{false};
 };
+
+/// Refinement state in a sample, without `writer` and `is_disputed`; none if its counts do not add
+/// up, its chunks do not ascend, or a name or a number is out of range.
+[[nodiscard]] std::optional<SeenFront> front_from(const tactus_v5_RefinementState& sample);
 
 /// Reads the newest refinement state of each controller on a domain. One thread.
 class RefinementStateReader

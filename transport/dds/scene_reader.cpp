@@ -37,6 +37,26 @@ constexpr auto kMotionLost = std::chrono::milliseconds(300);
 
 } // namespace
 
+Result<SeenObject, Refused> object_from(const tactus_v5_ObjectRecord& record)
+{
+    SeenObject object;
+    object.server_epoch = record.server_epoch;
+    object.number = record.object;
+    object.generation = record.generation;
+    object.shown.name = text_of(record.name);
+    std::memcpy(object.shown.model.data(), record.model_hash, object.shown.model.size());
+    object.shown.material = material_of(record);
+    if (!is_valid_name(object.shown.name))
+    {
+        return Refused::object_name;
+    }
+    if (!is_sound(object.shown.material))
+    {
+        return Refused::object_material;
+    }
+    return object;
+}
+
 std::uint64_t PoseCounts::refused_in_all() const noexcept
 {
     return std::accumulate(refused.begin(), refused.end(), std::uint64_t{0});
@@ -199,21 +219,12 @@ void SceneReader::take_records(std::uint64_t epoch, Server& server, const Take& 
 std::optional<Refused>
 SceneReader::take_record(Server& server, const tactus_v5_ObjectRecord& record, const Take& take)
 {
-    SeenObject news;
-    news.server_epoch = record.server_epoch;
-    news.number = record.object;
-    news.generation = record.generation;
-    news.shown.name = text_of(record.name);
-    std::memcpy(news.shown.model.data(), record.model_hash, news.shown.model.size());
-    news.shown.material = material_of(record);
-    if (!is_valid_name(news.shown.name))
+    auto read = object_from(record);
+    if (!read)
     {
-        return Refused::object_name;
+        return read.error();
     }
-    if (!is_sound(news.shown.material))
-    {
-        return Refused::object_material;
-    }
+    SeenObject news = std::move(read).value();
     server.unconfirmed.erase(record.object);
     const auto known = server.objects.find(record.object);
     if (known != server.objects.end() && known->second.generation == record.generation)

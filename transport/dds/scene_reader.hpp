@@ -49,6 +49,9 @@ struct SeenObject
     PoseCounts counts;
 };
 
+/// Object in a record, without its pose and serial number; refused for an invalid name or material.
+[[nodiscard]] Result<SeenObject, Refused> object_from(const tactus_v5_ObjectRecord& record);
+
 enum class SceneNews : std::uint8_t
 {
     comes,

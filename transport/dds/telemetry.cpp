@@ -184,7 +184,7 @@ std::optional<ObjectTelemetry> from_wire(const tactus_v5_ObjectTelemetry& wire)
     // Rounding may place an object just beyond kPoseReachMax_m.
     const bool is_sound = pose || pose.error() == PoseRefusal::translation;
     const std::string_view name = text_of(wire.name);
-    if (!is_sound || wire.number >= kMaxObjects || !std::ranges::all_of(name, is_printable))
+    if (!is_sound || wire.number >= kMaxObjects || !is_printable_line(name))
     {
         return std::nullopt;
     }
@@ -239,7 +239,8 @@ void copy_counts(const From& from, To& to)
     to.faults_seen = from.faults_seen;
 }
 
-/// Telemetry in a sample; none if a name is invalid, a number impossible, or a count too large.
+} // namespace
+
 std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
 {
     WatchedController news;
@@ -297,8 +298,6 @@ std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
     }
     return news;
 }
-
-} // namespace
 
 Result<std::unique_ptr<TelemetryWriter>, Refusal>
 TelemetryWriter::create(const Domain& domain, std::string controller_name,

@@ -11,8 +11,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+struct tactus_v5_Telemetry; // idlc's type of a sample.
 
 namespace tactus::dds
 {
@@ -64,6 +67,10 @@ struct WatchedController
     /// True if any program ended this controller's instance in DDS; poll() then checks its writer.
     bool is_disputed{false};
 };
+
+/// Telemetry in a sample, without `writer` and `is_disputed`; none if a name is invalid, a number
+/// impossible, or a count too large.
+[[nodiscard]] std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample);
 
 /// Reads the newest telemetry of each controller on a domain. One thread.
 class TelemetryReader

@@ -89,19 +89,28 @@ bool is_of_its_controller(const Sample& sample, const dds_sample_info_t* info, v
     return is_it || refuse(info, context, Refused::identity);
 }
 
+/// True if the numbers of a sample can be; otherwise refuses it. `number` is that of its model or
+/// object.
+template <typename Sample>
+bool has_sound_numbers(const Sample& sample, std::uint32_t number, const dds_sample_info_t* info,
+                       void* context)
+{
+    const auto fault = fault_of(sample);
+    return !fault || refuse(info, context, *fault, number);
+}
+
 bool is_honest_entry(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& entry = *static_cast<const tactus_v5_CatalogueEntry*>(sample);
     return is_of_its_server(entry, info, context) &&
-           (entry.model < kMaxModels || refuse(info, context, Refused::model_number, entry.model));
+           has_sound_numbers(entry, entry.model, info, context);
 }
 
 bool is_honest_record(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& record = *static_cast<const tactus_v5_ObjectRecord*>(sample);
     return is_of_its_server(record, info, context) &&
-           (record.object < kMaxObjects ||
-            refuse(info, context, Refused::object_number, record.object));
+           has_sound_numbers(record, record.object, info, context);
 }
 
 bool is_honest_motion(const void* sample, const dds_sample_info_t* info, void* context)
@@ -133,18 +142,11 @@ bool is_honest_refinement_state(const void* sample, const dds_sample_info_t* inf
                                 context);
 }
 
-/// True if the numbers of a sample fit together; its payload is checked by EditReader.
 bool is_honest_edit(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& edit = *static_cast<const tactus_v5_Edits*>(sample);
-    const bool is_in_ranges = edit.part < edit.parts && edit.parts <= kMaxSumParts;
-    const bool is_single = edit.index < kKeptEdits && edit.parts == 1 && edit.to == edit.from + 1 &&
-                           edit.to != 0 && edit.index == edit.to % kKeptEdits;
-    const bool is_sum = edit.from == 0 && edit.index == kKeptEdits + edit.part;
     return is_of_its_server(edit, info, context) &&
-           (edit.model < kMaxModels || refuse(info, context, Refused::model_number, edit.model)) &&
-           ((is_in_ranges && (is_single || is_sum)) ||
-            refuse(info, context, Refused::edit, edit.model));
+           has_sound_numbers(edit, edit.model, info, context);
 }
 
 bool is_honest_edit_request(const void* sample, const dds_sample_info_t* info, void* context)
@@ -277,6 +279,29 @@ Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
         return refused(traits, reader.handle);
     }
     return reader;
+}
+
+std::optional<Refused> fault_of(const tactus_v5_CatalogueEntry& entry) noexcept
+{
+    return entry.model < kMaxModels ? std::nullopt : std::optional(Refused::model_number);
+}
+
+std::optional<Refused> fault_of(const tactus_v5_ObjectRecord& record) noexcept
+{
+    return record.object < kMaxObjects ? std::nullopt : std::optional(Refused::object_number);
+}
+
+std::optional<Refused> fault_of(const tactus_v5_Edits& edit) noexcept
+{
+    if (edit.model >= kMaxModels)
+    {
+        return Refused::model_number;
+    }
+    const bool is_in_ranges = edit.part < edit.parts && edit.parts <= kMaxSumParts;
+    const bool is_single = edit.index < kKeptEdits && edit.parts == 1 && edit.to == edit.from + 1 &&
+                           edit.to != 0 && edit.index == edit.to % kKeptEdits;
+    const bool is_sum = edit.from == 0 && edit.index == kKeptEdits + edit.part;
+    return is_in_ranges && (is_single || is_sum) ? std::nullopt : std::optional(Refused::edit);
 }
 
 std::string server_partition(std::uint64_t server_epoch)

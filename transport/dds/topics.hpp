@@ -8,7 +8,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+
+struct tactus_v5_CatalogueEntry; // idlc's types of samples.
+struct tactus_v5_Edits;
+struct tactus_v5_ObjectRecord;
 
 namespace tactus::dds
 {
@@ -57,6 +62,12 @@ enum class Topic : std::uint8_t
 /// models or parts of an edit. `domain` must outlive the reader.
 [[nodiscard]] Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
                                                     const std::string& partition);
+
+/// Reason why the readers of make_reader() drop a sample with these numbers; none if they don't.
+[[nodiscard]] std::optional<Refused> fault_of(const tactus_v5_CatalogueEntry& entry) noexcept;
+[[nodiscard]] std::optional<Refused> fault_of(const tactus_v5_ObjectRecord& record) noexcept;
+/// The payload is checked by edit_from().
+[[nodiscard]] std::optional<Refused> fault_of(const tactus_v5_Edits& edit) noexcept;
 
 /// Partition name for readers that matches the partitions of all controllers.
 inline constexpr const char* kAnyPartition = "*";
