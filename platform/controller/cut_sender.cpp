@@ -40,8 +40,9 @@ EditRequest request_of(const BurrCut& cut, const BurrShape& shape, const Vec3& o
     return request;
 }
 
-Result<std::unique_ptr<CutSender>, Refusal>
-CutSender::create(const dds::Domain& domain, const Controller& controller, const Options& options)
+Result<std::unique_ptr<CutSender>, Refusal> CutSender::create(const dds::Domain& domain,
+                                                              const Controller& controller,
+                                                              const Options& options, Log log)
 {
     std::map<std::uint32_t, Burr> burrs;
     std::uint32_t cutting = 0;
@@ -63,13 +64,13 @@ CutSender::create(const dds::Domain& domain, const Controller& controller, const
         cutting |= 1U << tool;
     }
     return cutting == 0 ? nullptr
-                        : std::unique_ptr<CutSender>(
-                              new CutSender(domain, controller, std::move(burrs), cutting));
+                        : std::unique_ptr<CutSender>(new CutSender(
+                              domain, controller, std::move(burrs), cutting, std::move(log)));
 }
 
 CutSender::CutSender(const dds::Domain& domain, const Controller& controller,
-                     std::map<std::uint32_t, Burr> burrs, std::uint32_t cutting)
-    : burrs_(std::move(burrs)), tap_(cutting), writer_(domain)
+                     std::map<std::uint32_t, Burr> burrs, std::uint32_t cutting, Log log)
+    : burrs_(std::move(burrs)), tap_(cutting), writer_(domain, std::move(log))
 {
     for (const ServedModel& model : controller.models())
     {

@@ -10,6 +10,7 @@
 #include "transport/dds/domain.hpp"
 #include "transport/dds/edit_reader.hpp"
 #include "transport/edit_request.hpp"
+#include "transport/log.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +30,7 @@ namespace tactus::hrtc
 struct CutCounts
 {
     std::uint64_t sent{0};
-    std::uint64_t unsent{0};       ///< Cuts of models without edits, or that DDS did not take.
+    std::uint64_t unsent{0}; ///< Cuts of models without edits, not permitted, or without room.
     std::uint64_t samples_lost{0}; ///< CutTap::lost().
     double volume_m3{0.0};         ///< Greatest volume that the sent ones remove.
 };
@@ -39,9 +40,10 @@ class CutSender
 {
 public:
     /// Refused if a tool that is to carve has no volume. Null if no tool is to carve. `domain` and
-    /// `controller` must outlive the sender.
+    /// `controller` must outlive the sender. `log` gets a line if requests are not permitted.
     [[nodiscard]] static Result<std::unique_ptr<CutSender>, Refusal>
-    create(const dds::Domain& domain, const Controller& controller, const Options& options);
+    create(const dds::Domain& domain, const Controller& controller, const Options& options,
+           Log log);
 
     /// Tap for the haptic thread, which must not outlive the sender.
     [[nodiscard]] CutTap& tap() noexcept { return tap_; }
@@ -66,7 +68,7 @@ private:
     };
 
     CutSender(const dds::Domain& domain, const Controller& controller,
-              std::map<std::uint32_t, Burr> burrs, std::uint32_t cutting);
+              std::map<std::uint32_t, Burr> burrs, std::uint32_t cutting, Log log);
 
     [[nodiscard]] bool try_send(const BurrCut& cut, const BurrShape& shape,
                                 const dds::EditReader& reader, std::uint64_t server_epoch);

@@ -366,7 +366,7 @@ std::optional<Refusal> Session::assemble()
             return failure(topics.error().text);
         }
         topics_ = std::move(topics).value();
-        auto cuts = CutSender::create(client_->domain(), *controller_, options_);
+        auto cuts = CutSender::create(client_->domain(), *controller_, options_, log_line);
         if (!cuts)
         {
             return failure(cuts.error().text);
