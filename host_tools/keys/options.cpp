@@ -54,7 +54,7 @@ void declare_options(CommandLine& line, Site& site, Names& names)
                     "Names of viewers (spm_view): they may watch controllers")
         .repeatable_with_more();
     line.add_option("--editors", names.editors,
-                    "Names of editors: they may request edits of models from servers")
+                    "Names of controllers that may also request edits of models (hrtc --edit)")
         .repeatable_with_more();
     line.begin_task("The keys", "tactus-keys --config site.toml --revoke hand-1");
     line.add_option("--days", site.days, "Validity of certificates, rights and the CRL, in days")

@@ -49,7 +49,9 @@ constexpr std::array kControllerWrites{Right{"wanted", kOwn}, Right{"telemetry",
 constexpr std::array kControllerReads{Right{"catalogue", kUnnamed}, Right{"chunks", kOwnPieces},
                                       Right{"objects", kOfServers}, Right{"motion", kOfServers},
                                       Right{kEdits, kOfServers}};
-constexpr std::array kEditorWrites{Right{kEditRequests, kOfServers}};
+constexpr std::array kEditorWrites{Right{"wanted", kOwn}, Right{"telemetry", kOwn},
+                                   Right{"refinement_state", kOwn},
+                                   Right{kEditRequests, kOfServers}};
 constexpr std::array kViewerReads{Right{"telemetry", kAny}, Right{"refinement_state", kAny}};
 
 struct Rights

@@ -14,7 +14,7 @@ enum class Role : std::uint8_t
     server,     ///< Serves models and scenes, and may watch.
     controller, ///< Requests and reads in partitions of its name.
     viewer,     ///< Reads telemetry and refinement states.
-    editor,     ///< Requests edits of models; reads what a controller reads.
+    editor,     ///< A controller that also requests edits of models.
 };
 
 /// Name of the role: "server", "controller", "viewer" or "editor".

@@ -27,7 +27,7 @@ namespace tactus::hrtc
 struct CutCounts
 {
     std::uint64_t sent{0};
-    std::uint64_t unsent{0};       ///< Cuts of models without edits, or that were not taken.
+    std::uint64_t unsent{0}; ///< Cuts of models without edits, not permitted, or without room.
     std::uint64_t samples_lost{0}; ///< CutTap::lost().
     double volume_m3{0.0};         ///< Greatest volume that the sent ones remove.
 };

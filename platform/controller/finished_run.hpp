@@ -14,6 +14,7 @@
 #include "platform/scene/scene_keeper.hpp"
 #include "transport/dds/authority.hpp"
 #include "transport/dds/dds_client.hpp"
+#include "transport/dds/edit_reader.hpp"
 #include "transport/dds/refusals.hpp"
 #include "transport/dds/scene_reader.hpp"
 
@@ -45,6 +46,8 @@ struct FinishedRun
     std::vector<PoseUse> pose_uses{}; ///< Use of poses, one entry an object; empty without DDS.
     /// Counts of poses, one entry a model; empty if poses aren't followed.
     std::vector<dds::PoseCounts> pose_counts{};
+    /// Counts of edits, one entry a model; empty if no model can be edited.
+    std::vector<dds::EditReader::Counts> edit_counts{};
     std::optional<CutCounts> cuts{};               ///< Edit requests of tools; none without --edit.
     SceneNewsCounts scene_news{};                  ///< Counts of the changes of a server's scene.
     std::vector<dds::PeerRefusals> refused{};      ///< Refused messages of other participants.

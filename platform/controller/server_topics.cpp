@@ -77,7 +77,7 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
     , controller_(controller)
     , authorities_(authorities)
     , keeper_(std::move(keeper))
-    , requests_(client.domain())
+    , requests_(client.domain(), log_line)
     , seen_(controller.models().size())
 {
     for (const ServedModel& model : controller.models())
@@ -216,6 +216,10 @@ std::uint64_t ServerTopics::server_of(std::size_t model) const
 /// Passes edits to the mailbox. Edits without room there are offered again in the next step.
 void ServerTopics::pass_edits()
 {
+    if (const auto model = edit_mailbox_->take_refused())
+    {
+        edits_->end(model->value);
+    }
     for (std::size_t i = 0; i < controller_.models().size(); ++i)
     {
         edits_->follow(i, server_of(i));

@@ -605,6 +605,7 @@ void SessionRun::note_topics()
         done_.pose_uses.assign(mailbox_.uses().begin(), mailbox_.uses().end());
         done_.pose_counts = parts_.topics->pose_counts();
         done_.scene_news = parts_.topics->scene_news();
+        done_.edit_counts = parts_.topics->edit_counts();
         done_.cuts = parts_.topics->cut_counts();
         done_.refused = parts_.topics->refused();
         done_.server_events = parts_.topics->server_events();

@@ -46,8 +46,16 @@ std::span<const SurfaceEdit> EditMailbox::edits() noexcept
     return std::span(views_).first(shown_);
 }
 
-void EditMailbox::done() noexcept
+void EditMailbox::done(std::span<const ModelOutput> models) noexcept
 {
+    for (const SurfaceEdit& edit : std::span(views_).first(shown_))
+    {
+        const std::uint32_t model = edit.model.value;
+        if (model >= models.size() || models[model].edit_revision < edit.revision)
+        {
+            refused_.store(model + 1, std::memory_order_relaxed);
+        }
+    }
     if (shown_ > 0)
     {
         const std::uint64_t head = head_.load(std::memory_order_relaxed);
@@ -55,6 +63,12 @@ void EditMailbox::done() noexcept
                     std::memory_order_release); // Pairs with the acquire in try_put().
         shown_ = 0;
     }
+}
+
+std::optional<ModelId> EditMailbox::take_refused() noexcept
+{
+    const std::uint32_t refused = refused_.exchange(0, std::memory_order_relaxed);
+    return refused > 0 ? std::optional(ModelId{refused - 1}) : std::nullopt;
 }
 
 } // namespace tactus

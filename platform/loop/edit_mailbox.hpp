@@ -4,6 +4,7 @@
 
 #include "rt_core/base/model_id.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/surface_edit.hpp"
 #include "transport/edit_content.hpp"
 
@@ -11,6 +12,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,8 +44,12 @@ public:
     /// Allocates nothing.
     [[nodiscard]] std::span<const SurfaceEdit> edits() noexcept;
     /// Haptic thread: returns the cells of the edits from the last edits(). Nothing happens if
-    /// there were none.
-    void done() noexcept;
+    /// there were none. `models` are those after the frame, and show the edits that it refused.
+    void done(std::span<const ModelOutput> models) noexcept;
+
+    /// Transport thread: model of the last edit that a frame refused since the last call; none if
+    /// there was none.
+    [[nodiscard]] std::optional<ModelId> take_refused() noexcept;
 
     /// Any thread: number of edits that frames have taken.
     [[nodiscard]] std::uint64_t taken() const noexcept
@@ -67,6 +73,8 @@ private:
     std::array<SurfaceEdit, kEditsPerFrame> views_{};
     std::size_t shown_{0}; ///< Number of edits from the last edits().
     alignas(64) std::atomic<std::uint64_t> head_{0};
+    /// Number of the model of the last refused edit, plus 1; 0: none. Orders nothing.
+    std::atomic<std::uint32_t> refused_{0};
     alignas(64) std::atomic<std::uint64_t> tail_{0};
 };
 

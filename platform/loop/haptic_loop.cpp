@@ -95,7 +95,7 @@ void HapticLoop::run_period() noexcept
     record(input, output);
     if (parts_.edit_mailbox != nullptr)
     {
-        parts_.edit_mailbox->done();
+        parts_.edit_mailbox->done(output.models);
     }
     measures_.frame = last_end_ - start;
     measures_.cpu = now.cpu_time - cpu_before;

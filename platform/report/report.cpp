@@ -136,6 +136,8 @@ Json models_of(const RunRecord& record)
                         {"faces", header.fields().source_faces},
                         {"diagonal_m", header.diagonal_m()},
                         {"edits", output.edit_revision},
+                        {"edits_refused",
+                         record.run.edit_counts.empty() ? 0U : record.run.edit_counts[i].refused},
                         {"added_faces", output.added.used},
                         {"pages_used_max", output.pages.used_max},
                         {"faces_used_max", output.faces.used_max},

@@ -72,6 +72,10 @@ Result<double, Refusal> LocalEdits::change(std::size_t model, const Change& chan
 Result<double, Refusal> LocalEdits::try_change(std::size_t model, const Change& change)
 {
     TACTUS_ASSERT(has_room(model));
+    if (ended_.contains(model))
+    {
+        return failure("a frame has refused an edit; the model gets no more");
+    }
     {
         const std::lock_guard waiting(waiting_mutex_);
         if (waiting_.size() >= kWaitingMax)
@@ -117,8 +121,21 @@ Result<Done, Refusal> LocalEdits::save(std::size_t model, const std::string& pat
 
 void LocalEdits::step()
 {
+    end_refused();
     carve_by_tools();
     pass_on();
+}
+
+/// Ends the edits of a model after a frame has refused one: those behind it would be refused, too.
+void LocalEdits::end_refused()
+{
+    if (const std::optional<ModelId> model = mailbox_.take_refused())
+    {
+        log_.write(
+            fmt::format("model {}: a frame has refused an edit; it gets no more", model->value));
+        const std::lock_guard lock(models_mutex_);
+        ended_.insert(model->value);
+    }
 }
 
 void LocalEdits::carve_by_tools()

@@ -21,6 +21,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -31,7 +32,7 @@ namespace tactus::hrtc
 
 /// Edits of a World's models of files, by calls of the program and by tools that carve. Any thread
 /// but the haptic one; callers wait for each other, the haptic thread never. Edits reach the frame
-/// in the order of the changes, at most kMaxEditsPerFrame in a frame.
+/// in the order of the changes.
 class LocalEdits
 {
 public:
@@ -69,10 +70,12 @@ private:
 
     [[nodiscard]] Result<double, Refusal> try_change(std::size_t model, const Change& change);
     void carve_by_tools();
+    void end_refused();
     void pass_on();
 
-    mutable std::mutex models_mutex_; ///< Guards the values of models_.
+    mutable std::mutex models_mutex_; ///< Guards the values of models_, and ended_.
     std::map<std::size_t, EditedModel> models_;
+    std::set<std::size_t> ended_;      ///< Models of which a frame has refused an edit.
     mutable std::mutex waiting_mutex_; ///< Guards waiting_; taken after models_mutex_.
     std::deque<std::pair<ModelId, EditContent>> waiting_; ///< Edits on the way to the mailbox.
     // The thread of step():

@@ -104,6 +104,21 @@ void EditReader::pop(std::size_t model)
     feeds_[model].ready.pop_front();
 }
 
+void EditReader::end(std::size_t model)
+{
+    Feed& feed = feeds_[model];
+    if (std::exchange(feed.model.room, 0U) == 0)
+    {
+        return;
+    }
+    feed.number.reset();
+    feed.pending.clear();
+    feed.sum = {};
+    feed.ready.clear();
+    feed.counts.is_stopped = true;
+    refuse(feed, "a frame has refused an edit; the model keeps its surface and gets no more edits");
+}
+
 std::optional<std::uint32_t> EditReader::number_of(std::size_t model) const
 {
     return feeds_[model].number;
@@ -341,9 +356,12 @@ bool EditWriter::try_send(EditRequest request)
             make_writer(domain_, Topic::edit_requests, server_partition(request.server_epoch));
         if (!endpoint)
         {
-            return false;
+            log_.write("edit requests can't be sent: " + endpoint.error().text);
         }
-        known = endpoints_.emplace(request.server_epoch, std::move(endpoint).value()).first;
+        known =
+            endpoints_
+                .emplace(request.server_epoch, endpoint ? std::move(endpoint).value() : Endpoint())
+                .first;
     }
     if (!is_matched(known->second))
     {

@@ -16,6 +16,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct tactus_v5_Edits; // idlc's type of a sample.
@@ -50,7 +51,7 @@ public:
         std::uint64_t edits{0};   ///< Edits for the frame, including steps of sums.
         std::uint64_t sums{0};    ///< Sums that were used.
         std::uint64_t gaps{0};    ///< Times that an edit arrived before one that it follows.
-        std::uint64_t refused{0}; ///< Refused samples and sums.
+        std::uint64_t refused{0}; ///< Refused samples and sums, and edits that a frame refused.
         bool is_stopped{false};   ///< True while the model gets no edits.
     };
 
@@ -67,6 +68,10 @@ public:
     [[nodiscard]] const EditContent* next(std::size_t model) const;
     /// Removes the next edit, which must exist (asserted).
     void pop(std::size_t model);
+
+    /// Ends the edits of a model for good, with one line, after a frame has refused one: all behind
+    /// it would be refused, too.
+    void end(std::size_t model);
 
     /// Number of the model on its server; none if that is not known yet.
     [[nodiscard]] std::optional<std::uint32_t> number_of(std::size_t model) const;
@@ -120,17 +125,23 @@ private:
 class EditWriter
 {
 public:
-    /// `domain` must outlive the writer.
-    explicit EditWriter(const Domain& domain) : domain_(domain) {}
+    /// `domain` must outlive the writer. `log` gets a line for each server to which the rights of
+    /// this participant permit no requests.
+    explicit EditWriter(const Domain& domain, Log log = {}) : domain_(domain), log_(std::move(log))
+    {
+    }
 
     /// Sends a request, with its controller and serial number set. False if it is not sound
-    /// (is_sound()), the server does not listen yet, or the writer has no room.
+    /// (is_sound()), this participant has no right to it, the server does not listen yet, or the
+    /// writer has no room.
     [[nodiscard]] bool try_send(EditRequest request);
     [[nodiscard]] std::uint64_t sent() const noexcept { return serial_; }
 
 private:
     const Domain& domain_;
-    std::map<std::uint64_t, Endpoint> endpoints_; ///< Writers by the server's epoch.
+    RateLimitedLog log_;
+    /// Writers by the server's epoch; those that could not be made are invalid.
+    std::map<std::uint64_t, Endpoint> endpoints_;
     std::uint64_t serial_{0};
 };
 

@@ -153,11 +153,11 @@ skip_without_plugins() {
 }
 
 # use_keys: programs started after this call have keys: servers are `station`, controllers `hand-1`.
-# Keys of `hand-2` and of `desk`, a viewer, lie beside them in machines/.
+# Keys of `hand-2`, of `desk`, a viewer, and of two editors lie beside them in machines/.
 use_keys() {
     skip_without_plugins
     "$keys" --domain "$domain" --servers station --controllers hand-1 hand-2 --viewers desk \
-        >keys.log 2>&1 || fail "the keys: $(cat keys.log)"
+        --editors editor-1 editor-2 >keys.log 2>&1 || fail "the keys: $(cat keys.log)"
     server_security=(--security "$PWD/machines/station")
     controller_security=(--security "$PWD/machines/hand-1")
 }

@@ -163,7 +163,9 @@ TEST(Rights, are_the_least_of_each_role)
                   "subscribe/wanted *", "subscribe/telemetry *", "subscribe/refinement_state *",
                   "subscribe/edit_requests server.*"}));
     EXPECT_EQ(rights_of(keys::Role::editor, "desk-2"),
-              (std::set<std::string>{"publish/edit_requests server.*", "subscribe/catalogue ",
+              (std::set<std::string>{"publish/wanted desk-2", "publish/telemetry desk-2",
+                                     "publish/refinement_state desk-2",
+                                     "publish/edit_requests server.*", "subscribe/catalogue ",
                                      "subscribe/chunks desk-2.*", "subscribe/objects server.*",
                                      "subscribe/motion server.*", "subscribe/edits server.*"}));
 }

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 #include <thread>
 
 namespace tactus
@@ -42,12 +44,24 @@ bool try_put(EditMailbox& sut, std::uint32_t number)
     return sut.try_put(ModelId{number % 7}, edit_of(number));
 }
 
+/// Models after a frame that made all edits up to this number.
+std::array<ModelOutput, 7> models_after(std::uint32_t number)
+{
+    std::array<ModelOutput, 7> models;
+    for (ModelOutput& model : models)
+    {
+        model.edit_revision = number;
+    }
+    return models;
+}
+
 TEST(EditMailbox, is_empty_at_first)
 {
     EditMailbox sut;
     EXPECT_TRUE(sut.edits().empty());
-    sut.done();
+    sut.done({});
     EXPECT_TRUE(sut.edits().empty());
+    EXPECT_FALSE(sut.take_refused());
 }
 
 TEST(EditMailbox, refuses_an_edit_too_many_and_has_room_once_a_frame_is_done)
@@ -63,7 +77,7 @@ TEST(EditMailbox, refuses_an_edit_too_many_and_has_room_once_a_frame_is_done)
     ASSERT_EQ(edits.size(), EditMailbox::kEditsPerFrame);
     EXPECT_FALSE(try_put(sut, next)); // The frame still reads them.
     expect_is(edits[0], 1);
-    sut.done();
+    sut.done(models_after(1));
     EXPECT_EQ(sut.taken(), EditMailbox::kEditsPerFrame);
     for (std::uint32_t i = 0; i < EditMailbox::kEditsPerFrame; ++i)
     {
@@ -79,8 +93,25 @@ TEST(EditMailbox, edits_that_are_not_done_are_shown_again)
     ASSERT_TRUE(try_put(sut, 5));
     expect_is(sut.edits()[0], 5);
     expect_is(sut.edits()[0], 5);
-    sut.done();
+    sut.done(models_after(6));
     EXPECT_TRUE(sut.edits().empty());
+    EXPECT_FALSE(sut.take_refused());
+}
+
+TEST(EditMailbox, tells_once_the_model_whose_edit_a_frame_refused)
+{
+    EditMailbox sut;
+    ASSERT_TRUE(try_put(sut, 5));
+    ASSERT_TRUE(try_put(sut, 6));
+    ASSERT_EQ(sut.edits().size(), 1U);
+    std::array<ModelOutput, 7> models = models_after(5);
+    models[5].edit_revision = 4;
+    sut.done(models);
+    EXPECT_EQ(sut.take_refused(), ModelId{5});
+    EXPECT_FALSE(sut.take_refused());
+    ASSERT_EQ(sut.edits().size(), 1U); // Of a model that the frame does not have.
+    sut.done(std::span(models).first(3));
+    EXPECT_EQ(sut.take_refused(), ModelId{6});
 }
 
 TEST(EditMailbox, holds_the_largest_edit)
@@ -111,9 +142,10 @@ TEST(EditMailbox, passes_all_edits_in_order_between_two_threads)
         {
             expect_is(edit, ++taken);
         }
-        sut.done();
+        sut.done(models_after(taken));
     }
     transport.join();
+    EXPECT_FALSE(sut.take_refused());
     EXPECT_EQ(sut.taken(), kAll);
     EXPECT_TRUE(sut.edits().empty());
 }

@@ -343,6 +343,31 @@ TEST_F(DdsEdits, a_room_that_is_too_small_stops_them_by_name)
     EXPECT_TRUE(sut.lines.has("the room is 1 (--edit-faces)"));
 }
 
+TEST_F(DdsEdits, a_model_whose_edit_a_frame_refused_gets_no_more)
+{
+    Controller sut(2, model);
+    Controller witness(3, model);
+    sut.reader.follow(0, server->epoch());
+    witness.reader.follow(0, server->epoch());
+    publish(*server, 3);
+    ASSERT_TRUE(agrees(sut, *server));
+    const std::uint32_t revision = sut.frame.revision();
+    sut.reader.end(0);
+    sut.reader.end(0); // Edits behind the refused one were in the mailbox.
+    publish(*server, kKeptEdits);
+    ASSERT_TRUE(agrees(witness, *server));
+    for (const std::uint64_t epoch : {server->epoch(), std::uint64_t{0}, server->epoch()})
+    {
+        sut.reader.follow(0, epoch);
+        sut.step();
+    }
+    EXPECT_EQ(sut.frame.revision(), revision);
+    EXPECT_TRUE(sut.reader.counts(0).is_stopped);
+    EXPECT_EQ(sut.reader.counts(0).refused, 1U);
+    EXPECT_FALSE(sut.reader.number_of(0)); // No more requests either.
+    EXPECT_TRUE(sut.lines.has("model 'tiny': a frame has refused an edit"));
+}
+
 EditRequest some_request(const DdsServer& server)
 {
     EditRequest request;
