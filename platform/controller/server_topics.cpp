@@ -42,7 +42,7 @@ ServerTopics::create(dds::DdsClient& client, const Controller& controller,
                      bool shows_refinement_state, const Log& log)
 {
     std::unique_ptr<ServerTopics> topics(
-        new ServerTopics(client, controller, authorities, std::move(keeper)));
+        new ServerTopics(client, controller, authorities, std::move(keeper), log));
     std::vector<ModelIdentity> identities;
     for (std::size_t i = 0; i < controller.models().size() && i < kMaxShownModels; ++i)
     {
@@ -72,12 +72,12 @@ ServerTopics::create(dds::DdsClient& client, const Controller& controller,
 
 ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& controller,
                            std::span<dds::Authority> authorities,
-                           std::unique_ptr<SceneKeeper> keeper)
+                           std::unique_ptr<SceneKeeper> keeper, const Log& log)
     : client_(client)
     , controller_(controller)
     , authorities_(authorities)
     , keeper_(std::move(keeper))
-    , requests_(client.domain(), log_line)
+    , requests_(client.domain(), log)
     , seen_(controller.models().size())
 {
     for (const ServedModel& model : controller.models())

@@ -102,7 +102,8 @@ private:
     };
 
     ServerTopics(const dds::DdsClient& client, const Controller& controller,
-                 std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper);
+                 std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
+                 const Log& log);
 
     [[nodiscard]] std::uint64_t server_of(std::size_t model) const;
     void pass_edits();
