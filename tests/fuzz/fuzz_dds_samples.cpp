@@ -56,7 +56,7 @@ void require_finite(const Numbers& numbers)
 
 void require_name(const std::string& name)
 {
-    require(name.size() <= kMaxNameBytes && is_one_clear_line(name) &&
+    require(!name.empty() && name.size() <= kMaxNameBytes && is_one_clear_line(name) &&
                 name.find_first_of(" /@*\"'\\,;:") == std::string::npos,
             "an accepted name is short and has no separators");
 }
@@ -96,9 +96,11 @@ bool take(const tactus_v5_CatalogueEntry& entry)
         return false;
     }
     require(offer->model < kMaxModels, "an offer has a possible number");
-    require(!offer->name.empty(), "an offer has a name");
     require_name(offer->name);
-    require_name(offer->scene);
+    if (!offer->scene.empty())
+    {
+        require_name(offer->scene);
+    }
     require(offer->edit_room <= kMaxAddedFaces, "the room for added faces is bounded");
     return true;
 }
@@ -112,7 +114,6 @@ bool take(const tactus_v5_ObjectRecord& record)
         return false;
     }
     require(object.value().number < kMaxObjects, "an object has a possible number");
-    require(!object.value().shown.name.empty(), "an object has a name");
     require_name(object.value().shown.name);
     const Material& material = object.value().shown.material;
     require(material.stiffness_n_per_m > 0.0, "an accepted stiffness is positive");
@@ -168,7 +169,6 @@ bool take(const tactus_v5_Telemetry& sample)
     {
         return false;
     }
-    require(!news->name.empty(), "a controller has a name");
     require_name(news->name);
     const Telemetry& telemetry = news->telemetry;
     require(telemetry.tool_count <= kMaxTools && telemetry.pair_count <= kMaxPairs &&
@@ -199,7 +199,6 @@ bool take(const tactus_v5_Telemetry& sample)
     }
     for (const ModelIdentity& model : news->models)
     {
-        require(!model.name.empty(), "a model has a name");
         require_name(model.name);
     }
     require(news->objects.sweep_begin <= news->objects.sweep_end &&
