@@ -30,6 +30,10 @@ constexpr double kSliverHeight_quanta = 2.0;
 constexpr double kSliverShare = 0.5;
 /// Largest number of faces round a vertex that is examined.
 constexpr std::size_t kMaxMergedFan = 24;
+/// Removals whose moves differ by less are chosen by shape.
+constexpr double kMoveStep_quanta = 0.5;
+/// Share of the slack from which on the gap at an edge is remembered.
+constexpr double kMarkShare = 0.25;
 /// Least cosine between the normals of a face before and after.
 constexpr double kLeastNormalCosine = 0.5;
 
@@ -119,9 +123,10 @@ public:
 private:
     struct Removal
     {
-        std::uint32_t target{0};
+        std::size_t place{0}; ///< Place of the neighbour in the ring.
         double move{0.0};
-        double shape{0.0}; ///< Least height of a face that remains.
+        double shape{0.0};      ///< Least height of a face that remains.
+        Vec3 up{0.0, 0.0, 0.0}; ///< Normal of a plane over which both stars are graphs, or zero.
     };
 
     /// Removes the vertex to the neighbour that costs least; false if none is allowed. Fills ring_.
@@ -131,26 +136,72 @@ private:
         {
             return false;
         }
-        double spent = 0.0;
-        for (const std::uint32_t face : stars_[vertex])
-        {
-            spent = std::max(spent, static_cast<double>(faces_[face].moved_quanta));
-        }
-        std::optional<Removal> best;
+        candidates_.clear();
         for (std::size_t i = 0; i < ring_.size(); ++i)
         {
-            const auto removal = removal_to(vertex, i, slack_ - spent);
-            if (removal && (!best || removal->move < best->move - 0.25 ||
-                            (removal->move < best->move + 0.25 && removal->shape > best->shape)))
+            if (auto removal = removal_to(vertex, i))
             {
-                best = removal;
+                candidates_.push_back(*std::move(removal));
             }
         }
-        if (!best)
+        const auto is_better = [](const Removal& a, const Removal& b)
         {
-            return false;
+            const double a_step = std::floor(a.move / kMoveStep_quanta);
+            const double b_step = std::floor(b.move / kMoveStep_quanta);
+            return a_step < b_step || (a_step == b_step && a.shape > b.shape);
+        };
+        std::stable_sort(candidates_.begin(), candidates_.end(), is_better);
+        collect_marks(vertex);
+        for (const Removal& removal : candidates_)
+        {
+            if (assign_marks(vertex, removal))
+            {
+                apply(vertex, removal);
+                return true;
+            }
         }
-        apply(vertex, *best, spent);
+        return false;
+    }
+
+    /// The removed points of the vertex's faces, and the vertex.
+    void collect_marks(std::uint32_t vertex)
+    {
+        marks_.clear();
+        for (const std::uint32_t face : stars_[vertex])
+        {
+            marks_.insert(marks_.end(), faces_[face].marks.begin(), faces_[face].marks.end());
+        }
+        marks_.push_back(points_[vertex]);
+        star_marks_ = marks_.size();
+    }
+
+    /// Finds the nearest face of the new fan for each mark and each crossing of the removal; false
+    /// if one is farther than the slack.
+    [[nodiscard]] bool assign_marks(std::uint32_t vertex, const Removal& removal)
+    {
+        const std::size_t size = ring_.size();
+        marks_.resize(star_marks_);
+        if (removal.up.norm() > 0.0)
+        {
+            gap_to(points_[vertex], removal.place, removal.up, &marks_);
+        }
+        fan_.clear();
+        for (std::size_t i = 1; i + 1 < size; ++i)
+        {
+            fan_.push_back({points_[ring_[removal.place]],
+                            points_[ring_[(removal.place + i) % size]],
+                            points_[ring_[(removal.place + i + 1) % size]]});
+        }
+        owners_.clear();
+        for (const Vec3& mark : marks_)
+        {
+            const auto [owner, distance_sq] = nearest_of(fan_, mark);
+            if (distance_sq > slack_ * slack_)
+            {
+                return false;
+            }
+            owners_.push_back(owner);
+        }
         return true;
     }
 
@@ -213,13 +264,12 @@ private:
         return longest == 0.0 ? 0.0 : (b - a).cross(c - a).norm() / longest;
     }
 
-    [[nodiscard]] std::optional<Removal> removal_to(std::uint32_t vertex, std::size_t target,
-                                                    double allowed)
+    [[nodiscard]] std::optional<Removal> removal_to(std::uint32_t vertex, std::size_t target)
     {
         const std::size_t size = ring_.size();
         const Vec3& apex = points_[vertex];
         const Vec3& to = points_[ring_[target]];
-        Removal removal{ring_[target], (to - apex).norm(), std::numeric_limits<double>::max()};
+        Removal removal{target, (to - apex).norm(), std::numeric_limits<double>::max()};
         Vec3 up(0.0, 0.0, 0.0);
         double old_height = std::numeric_limits<double>::max();
         for (std::size_t i = 0; i < size; ++i)
@@ -262,17 +312,19 @@ private:
         }
         if (is_graph)
         {
-            removal.move = std::min(removal.move, gap_to(apex, target, up));
+            removal.up = up;
+            removal.move = std::min(removal.move, gap_to(apex, target, up, nullptr));
         }
-        if (removal.move > allowed || !is_linked_once(removal.target))
+        if (removal.move > slack_ || !is_linked_once(ring_[target]))
         {
             return std::nullopt;
         }
         return removal;
     }
 
-    /// Largest gap along `up` between the star of the apex and the fan from ring_[target].
-    [[nodiscard]] double gap_to(const Vec3& apex, std::size_t target, const Vec3& up)
+    /// Largest gap along `up` between the star of the apex and the fan from ring_[target]. Adds
+    /// the points of the star's edges where it is wide to `wide`.
+    double gap_to(const Vec3& apex, std::size_t target, const Vec3& up, std::vector<Vec3>* wide)
     {
         const std::size_t size = ring_.size();
         const Vec3 x = up.unitOrthogonal();
@@ -303,8 +355,14 @@ private:
                 if (along_spoke >= 0.0 && along_spoke <= 1.0 && along_edge >= 0.0 &&
                     along_edge <= 1.0)
                 {
-                    gap = std::max(
-                        gap, std::abs(t[2] + along_edge * (e[2] - t[2]) - along_spoke * spoke[2]));
+                    const double here =
+                        std::abs(t[2] + along_edge * (e[2] - t[2]) - along_spoke * spoke[2]);
+                    gap = std::max(gap, here);
+                    if (wide != nullptr && here > kMarkShare * slack_)
+                    {
+                        wide->push_back(apex + along_spoke *
+                                                   (spoke[0] * x + spoke[1] * y + spoke[2] * up));
+                    }
                 }
             }
         }
@@ -325,15 +383,20 @@ private:
         return gap;
     }
 
-    void apply(std::uint32_t vertex, const Removal& removal, double spent)
+    void apply(std::uint32_t vertex, const Removal& removal)
     {
-        const auto moved = static_cast<float>(spent + removal.move);
+        const std::uint32_t target = ring_[removal.place];
+        const std::size_t size = ring_.size();
         std::vector<std::uint32_t> star;
         star.swap(stars_[vertex]);
+        std::vector<std::uint32_t> fan(size - 2);
         for (const std::uint32_t face : star)
         {
             auto& corners = corners_[face];
-            if (std::find(corners.begin(), corners.end(), removal.target) != corners.end())
+            const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
+            const auto place = static_cast<std::size_t>(at);
+            const std::uint32_t next = corners[(place + 1) % 3];
+            if (std::find(corners.begin(), corners.end(), target) != corners.end())
             {
                 is_alive_[face] = false;
                 for (const std::uint32_t corner : corners)
@@ -342,16 +405,60 @@ private:
                 }
                 continue;
             }
-            const auto at = std::find(corners.begin(), corners.end(), vertex) - corners.begin();
-            const auto place = static_cast<std::size_t>(at);
-            corners[place] = removal.target;
-            stars_[removal.target].push_back(face);
-            faces_[face].moved_quanta = moved;
-            const Vec3& to = points_[removal.target];
+            const auto in_ring = static_cast<std::size_t>(
+                std::find(ring_.begin(), ring_.end(), next) - ring_.begin());
+            fan[(in_ring + size - removal.place) % size - 1] = face;
+            corners[place] = target;
+            stars_[target].push_back(face);
+            const Vec3& to = points_[target];
             faces_[face].corners[place] = {static_cast<std::int32_t>(to.x()),
                                            static_cast<std::int32_t>(to.y()),
                                            static_cast<std::int32_t>(to.z())};
+            faces_[face].marks.clear();
         }
+        for (std::size_t i = 0; i < marks_.size(); ++i)
+        {
+            faces_[fan[owners_[i]]].marks.push_back(marks_[i]);
+        }
+        for (const std::uint32_t face : fan)
+        {
+            thin_out(faces_[face]);
+        }
+    }
+
+    /// Keeps the marks farthest from the face on each side, and of the others those farthest from
+    /// each other.
+    void thin_out(SurfaceFace& face)
+    {
+        std::vector<Vec3>& marks = face.marks;
+        if (marks.size() <= kMaxMarks)
+        {
+            return;
+        }
+        const Vec3 base = to_vec3(face.corners[0]);
+        const Vec3 normal =
+            (to_vec3(face.corners[1]) - base).cross(to_vec3(face.corners[2]) - base);
+        const auto height = [&](const Vec3& mark) { return normal.dot(mark - base); };
+        const auto is_lower = [&](const Vec3& a, const Vec3& b) { return height(a) < height(b); };
+        std::iter_swap(marks.begin(), std::min_element(marks.begin(), marks.end(), is_lower));
+        std::iter_swap(marks.begin() + 1,
+                       std::max_element(marks.begin() + 1, marks.end(), is_lower));
+        gaps_.assign(marks.size(), std::numeric_limits<double>::max());
+        for (std::size_t kept = 1; kept < kMaxMarks; ++kept)
+        {
+            std::size_t farthest = kept;
+            for (std::size_t i = kept; i < marks.size(); ++i)
+            {
+                gaps_[i] = std::min(gaps_[i], (marks[i] - marks[kept - 1]).squaredNorm());
+                farthest = gaps_[i] > gaps_[farthest] ? i : farthest;
+            }
+            if (kept > 1)
+            {
+                std::swap(marks[kept], marks[farthest]);
+                std::swap(gaps_[kept], gaps_[farthest]);
+            }
+        }
+        marks.resize(kMaxMarks);
     }
 
     std::vector<SurfaceFace>& faces_;
@@ -368,9 +475,26 @@ private:
     std::vector<std::array<std::uint32_t, 2>> pairs_;
     std::vector<std::array<double, 3>> flat_;
     mutable std::vector<std::uint32_t> scratch_;
+    std::vector<Removal> candidates_;
+    std::vector<Vec3> marks_;
+    std::size_t star_marks_{0};       ///< Marks of marks_ that don't depend on the removal.
+    std::vector<std::size_t> owners_; ///< Face of the fan by mark.
+    std::vector<Triangle> fan_;
+    std::vector<double> gaps_;
 };
 
 } // namespace
+
+std::pair<std::size_t, double> nearest_of(std::span<const Triangle> faces, const Vec3& point)
+{
+    std::pair<std::size_t, double> best{0, std::numeric_limits<double>::max()};
+    for (std::size_t i = 0; i < faces.size(); ++i)
+    {
+        const double distance_sq = closest_point_on_triangle(point, faces[i]).distance_sq;
+        best = distance_sq < best.second ? std::pair(i, distance_sq) : best;
+    }
+    return best;
+}
 
 void merge_pieces(std::vector<SurfaceFace>& faces, std::span<const GridPoint> fixed,
                   double slack_quanta)

@@ -313,11 +313,39 @@ std::optional<SurfaceEditor::Plan> SurfaceEditor::plan_cut(const SweptRegion& re
         plan.added.push_back(
             {piece.corners,
              is_facet ? bucket_near(piece.corners, nearby) : faces_[near[piece.parent]].bucket,
-             is_facet ? 0.0F : faces_[near[piece.parent]].moved_quanta});
+             {}});
     }
+    hand_down_marks(*cut, near, region.slack_quanta, plan.added);
     drop_idle(plan.removed, plan.added, faces_);
     merge(plan, region.slack_quanta);
     return plan;
+}
+
+void SurfaceEditor::hand_down_marks(const SurfaceCut& cut, const std::vector<std::uint32_t>& near,
+                                    double slack_quanta, std::vector<SurfaceFace>& added) const
+{
+    std::vector<Triangle> pieces;
+    for (std::size_t first = 0; first < cut.pieces.size(); first += pieces.size())
+    {
+        const std::uint32_t parent = cut.pieces[first].parent;
+        pieces.clear();
+        for (std::size_t i = first; i < cut.pieces.size() && cut.pieces[i].parent == parent; ++i)
+        {
+            pieces.push_back(to_triangle(added[i].corners));
+        }
+        if (parent == CutPiece::kFacet)
+        {
+            continue;
+        }
+        for (const Vec3& mark : faces_[near[parent]].marks)
+        {
+            const auto [nearest, distance_sq] = nearest_of(pieces, mark);
+            if (distance_sq <= slack_quanta * slack_quanta)
+            {
+                added[first + nearest].marks.push_back(mark);
+            }
+        }
+    }
 }
 
 void SurfaceEditor::merge(Plan& plan, double slack_quanta) const
@@ -483,13 +511,11 @@ Result<SurfaceChange, Refusal> SurfaceEditor::displace(const Vec3& center_m, dou
         box.add({clamped(std::ceil(corner.x())), clamped(std::ceil(corner.y())),
                  clamped(std::ceil(corner.z()))});
     }
-    const auto moved = [&](const GridPoint& point)
+    const auto moved = [&](const Vec3& point)
     {
-        const double share = (to_vec3(point) - center).squaredNorm() / (radius * radius);
+        const double share = (point - center).squaredNorm() / (radius * radius);
         const double part = share < 1.0 ? (1.0 - share) * (1.0 - share) : 0.0;
-        const Vec3 at = to_vec3(point) + part * vector;
-        return GridPoint{clamped(std::round(at.x())), clamped(std::round(at.y())),
-                         clamped(std::round(at.z()))};
+        return Vec3(point + part * vector);
     };
     Plan plan;
     for (const std::uint32_t id : faces_.in_box(box))
@@ -497,8 +523,11 @@ Result<SurfaceChange, Refusal> SurfaceEditor::displace(const Vec3& center_m, dou
         SurfaceFace face = faces_[id];
         for (GridPoint& corner : face.corners)
         {
-            corner = moved(corner);
+            const Vec3 at = moved(to_vec3(corner));
+            corner = {clamped(std::round(at.x())), clamped(std::round(at.y())),
+                      clamped(std::round(at.z()))};
         }
+        std::transform(face.marks.begin(), face.marks.end(), face.marks.begin(), moved);
         if (face.corners != faces_[id].corners)
         {
             plan.removed.push_back(id);

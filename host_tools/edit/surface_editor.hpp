@@ -33,16 +33,20 @@ struct SurfaceChange
     double volume_m3{0.0};
 };
 
-/// The surface of a model while it is edited: source faces that are left, and added faces. 100 B a
-/// face of the source and of the room. A change takes time for the faces near its region only.
+/// The surface of a model while it is edited: source faces that are left, and added faces. 140 B a
+/// face of the source and of the room, and at most 24 x kMaxMarks B an added face. A change takes
+/// time for the faces near its region only.
 ///
 /// The surface bounds a solid, on the back of its faces. An open surface bounds a solid, too, near
 /// the edit: below its border, walls against the faces' normals are imagined. Bodies that overlap
 /// are edited as if each were alone.
 ///
 /// After a change, the surface is closed if it was closed before: the oriented edges of all faces
-/// cancel by position. New vertices are rounded to the grid. Pieces of new faces are merged if no
-/// point of the surface moves farther than SweptRegion::slack_quanta by all merges together.
+/// cancel by position. New vertices are rounded to the grid.
+///
+/// After a cut, the new faces and the added faces round them are merged: vertices are removed as
+/// long as the surface stays within SweptRegion::slack_quanta of all points that were removed
+/// before, however many edits lie between (merge_pieces.hpp). An edit has only faces that differ.
 ///
 /// A refused call changes nothing. Its text is one line with the value and the allowed range.
 class SurfaceEditor
@@ -86,6 +90,10 @@ private:
 
     [[nodiscard]] Result<SurfaceChange, Refusal> cut(const Sweep& sweep, CutSense sense);
     [[nodiscard]] std::optional<Plan> plan_cut(const SweptRegion& region, CutSense sense) const;
+    /// Gives the marks of cut faces to the nearest of their pieces. A mark that is far from all
+    /// pieces was cut off.
+    void hand_down_marks(const SurfaceCut& cut, const std::vector<std::uint32_t>& near,
+                         double slack_quanta, std::vector<SurfaceFace>& added) const;
     void merge(Plan& plan, double slack_quanta) const;
     [[nodiscard]] std::optional<int> winding_of(const Vec3& point) const;
     void add_walls(const GridBox& region, std::vector<CutFace>& faces) const;

@@ -68,6 +68,7 @@ void SurfaceFaces::remove(std::uint32_t id)
     }
     *link = next_[id];
     next_[id] = kAbsent;
+    faces_[id] = {};
     --level_counts_[cell.level];
     --count_;
 }

@@ -56,18 +56,22 @@ struct GridBox
     return box;
 }
 
+/// Largest number of removed points that a face keeps; more let merging drift between them, and
+/// take time.
+inline constexpr std::size_t kMaxMarks = 12;
+
 /// A face of the present surface.
 struct SurfaceFace
 {
     GridTriangle corners{};
     std::uint32_t bucket{0}; ///< Meaning as AddedFace::bucket.
-    /// Distance by which merging has moved this part of the surface at most; 0 for a source face.
-    float moved_quanta{0.0F};
+    /// Points that merging removed here, in quanta; none of a source face.
+    std::vector<Vec3> marks{};
 };
 
 /// The faces of a surface by id, found by region in a hierarchical grid: each face is listed in
 /// one cell, that of its box's least corner, on the level whose cells are as large as the box.
-/// 48 B an id and 4 to 8 B a face that was there at the start.
+/// 68 B an id and 4 to 8 B a face that was there at the start.
 class SurfaceFaces
 {
 public:

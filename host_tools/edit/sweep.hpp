@@ -72,10 +72,12 @@ struct SweptRegion
 inline constexpr double kSweptShift_quanta = 1.0 / 256.0;
 
 /// A vertex of a region that is nearer than slack_quanta + kSweptTouch_quanta to a face is moved by
-/// kSweptMoveShare x slack_quanta + kSweptMove_quanta: past any face that merging has moved.
+/// kSweptMoveShare x slack_quanta + kSweptMove_quanta: past most faces that merging has moved, but
+/// by less than the slack of all but the smallest tools, so that merging removes the steps that it
+/// leaves.
 inline constexpr double kSweptTouch_quanta = 1.5;
-inline constexpr double kSweptMoveShare = 1.25;
-inline constexpr double kSweptMove_quanta = 3.0;
+inline constexpr double kSweptMoveShare = 0.5;
+inline constexpr double kSweptMove_quanta = 1.5;
 
 /// Region of a sweep; `seed` chooses the shifts. Refused with one line: a core or radius that is
 /// not as above, a value that is not finite, a place too far from the model, a rotation that is

@@ -15,11 +15,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 namespace tactus
 {
@@ -331,8 +334,69 @@ TEST(surface_editor, small_steps_keep_the_surface_small)
             at = next;
         }
         std::printf("steps of %.2f radii: %u added faces\n", step, rig.sut.added_count());
-        EXPECT_LT(rig.sut.added_count(), step > 0.0 ? 18'000U : 2'000U);
+        EXPECT_LT(rig.sut.added_count(), step > 0.0 ? 1'500U : 300U);
         EXPECT_EQ(test::open_edges(rig.sut.surface()), 0U);
+    }
+}
+
+TEST(surface_editor, many_edits_stay_within_the_tolerance_of_one)
+{
+    EditRig rig(edit_model(kCube));
+    const double radius = 0.004;
+    std::vector<Sweep> sweeps;
+    const auto place = [](int step)
+    {
+        const double angle = 0.04 * step;
+        return Vec3(0.012 * std::sin(angle), 0.005 * std::sin(0.37 * angle), 0.0505);
+    };
+    for (int i = 0; i < 500; ++i)
+    {
+        sweeps.push_back(sphere_sweep(radius, place(i), place(i + 1)));
+        rig.take(rig.sut.carve(sweeps.back()));
+    }
+    EXPECT_EQ(test::open_edges(rig.sut.surface()), 0U);
+    rig.expect_same_faces();
+    const Soup after = rig.soup();
+    const double margin = tolerance_of(sweeps.front(), rig.quantum_m());
+    Random random(7);
+    std::size_t points = 0;
+    for (int i = 0; i < 4'000; ++i)
+    {
+        const Vec3 point(random.between(-0.016, 0.016), random.between(-0.01, 0.01),
+                         random.between(0.045, 0.052));
+        double depth = std::numeric_limits<double>::max();
+        for (const Sweep& sweep : sweeps)
+        {
+            depth = std::min(depth, depth_in(sweep, point));
+        }
+        if (std::abs(depth) < margin || std::abs(point.z() - 0.05) < 2.0 * rig.quantum_m())
+        {
+            continue;
+        }
+        ++points;
+        const double truth = depth > 0.0 && point.z() < 0.05 ? 1.0 : 0.0;
+        ASSERT_NEAR(test::winding_number(after, point), truth, 1e-3) << point << ", " << depth;
+    }
+    EXPECT_GT(points, 2'000U);
+}
+
+TEST(surface_editor, an_edit_has_only_faces_that_differ)
+{
+    EditRig rig(edit_model(kCube));
+    for (int i = 0; i < 40; ++i)
+    {
+        const Vec3 from(-0.01 + 3e-4 * i, 0.002, 0.0505);
+        const auto before = test::sorted_faces(rig.sut, Vec3(0.0, 0.0, 0.0));
+        const auto change = rig.sut.carve(sphere_sweep(0.004, from, from + Vec3(3e-4, 0.0, 0.0)));
+        rig.take(change);
+        const auto after = test::sorted_faces(rig.sut, Vec3(0.0, 0.0, 0.0));
+        ASSERT_EQ(change.value().edits.size(), 1U);
+        std::remove_cvref_t<decltype(before)> gone;
+        std::remove_cvref_t<decltype(before)> come;
+        std::ranges::set_difference(before, after, std::back_inserter(gone));
+        std::ranges::set_difference(after, before, std::back_inserter(come));
+        EXPECT_EQ(change.value().edits[0].removed.size(), gone.size()) << "step " << i;
+        EXPECT_EQ(change.value().edits[0].added.size(), come.size()) << "step " << i;
     }
 }
 
