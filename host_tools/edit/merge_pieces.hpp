@@ -27,8 +27,8 @@ namespace tactus
 /// nearest face that replaces it: vertices, and crossings of old with new edges where these are far
 /// apart. A removal is allowed if the old and the new faces are at most `slack_quanta` apart, and
 /// all marks of the old faces lie within `slack_quanta` of the new ones. So every mark stays within
-/// the slack of the surface. A face keeps kMaxMarks marks: the farthest from its plane, and of the
-/// others those far from each other.
+/// the slack of the surface; points between marks were found up to 1.1 slacks away. A face keeps
+/// kMaxMarks marks: the farthest from its plane, and of the others those far from each other.
 void merge_pieces(std::vector<SurfaceFace>& faces, std::span<const GridPoint> fixed,
                   double slack_quanta);
 
