@@ -14,6 +14,7 @@
 #include "tests/unit/recording/recorded_example.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/dds/piece_frame.hpp"
+#include "transport/dds/topics.hpp"
 #include "transport/edit_coding.hpp"
 
 #include <cstddef>
@@ -230,7 +231,11 @@ void make_samples(const fs::path& folder)
     record.pose = kPlacement;
     put_seed(folder / "object_record", fuzz::sample_script(SampleKind::object_record, record));
 
-    tactus_v5_MovedObject moved[] = {{0, 1, kPlacement}, {1, 1, kPlacement}};
+    tactus_v5_MovedObject moved[2];
+    std::memset(moved, 0, sizeof moved); // Seeds hold the padding, too.
+    moved[1].object = 1;
+    moved[0].generation = moved[1].generation = 1;
+    moved[0].pose = moved[1].pose = kPlacement;
     auto motion = zeros<tactus_v5_Motion>();
     motion.moved = {2, 2, moved, false};
     put_seed(folder / "motion", fuzz::sample_script(SampleKind::motion, motion));
@@ -259,7 +264,7 @@ void make_samples(const fs::path& folder)
     edits.payload = octets(coded);
     put_seed(folder / "edits_single", fuzz::sample_script(SampleKind::edits, edits));
     edits.to = 9;
-    edits.index = 256;
+    edits.index = dds::kKeptEdits;
     edits.parts = 2;
     put_seed(folder / "edits_sum", fuzz::sample_script(SampleKind::edits, edits));
 

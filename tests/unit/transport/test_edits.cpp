@@ -109,7 +109,7 @@ TEST(EditCoding, the_largest_edit_has_the_stated_size)
     const float q = edited_model().header.quantum_m();
     EditContent edit{1, {}, {}, {}};
     edit.removed_m.add(Vec3f{});
-    for (std::uint32_t i = 0; i < kMaxEditFaces; ++i)
+    for (std::uint32_t i = 0; i < kMaxSumFaces; ++i)
     {
         edit.removed.push_back(FaceId{i});
         AddedFace face{i, i, {}};
@@ -123,9 +123,10 @@ TEST(EditCoding, the_largest_edit_has_the_stated_size)
     }
     const auto bytes = coded(edit);
     EXPECT_EQ(bytes.size(), kMaxCodedEditBytes);
-    const auto decoded = decode_edit(bytes, edited_model().header);
+    const auto decoded = decode_edit(bytes, edited_model().header, kMaxSumFaces);
     ASSERT_TRUE(decoded) << decoded.error().text;
     EXPECT_EQ(decoded.value(), edit);
+    EXPECT_FALSE(decode_edit(bytes, edited_model().header)); // Only parts of a sum are as large.
 }
 
 TEST(EditCoding, every_truncation_and_a_byte_too_many_is_refused)
@@ -213,9 +214,9 @@ TEST(EditState, refuses_what_a_frame_refuses_and_stays_as_it_was)
         expect_fault(changed([&](EditContent& edit) { edit.revision = wrong; }), "number 2");
     }
     expect_fault(changed([](EditContent& edit) { edit.removed.resize(kMaxEditFaces + 1); }),
-                 "at most 1024");
+                 "at most 48");
     expect_fault(changed([](EditContent& edit) { edit.added.resize(kMaxEditFaces + 1); }),
-                 "at most 1024");
+                 "at most 48");
     // Removed before, never there, in a free slot, and twice.
     for (const std::uint32_t gone : {3U, face_ids + 1, face_ids + 10, ~0U})
     {
