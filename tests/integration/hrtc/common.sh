@@ -188,9 +188,12 @@ stop_publisher() {
 # start_hrtc ARGUMENT...: starts it in the background; its id is in $controller, its output in
 # hrtc.log.
 start_hrtc() {
+    local log
+    exec {log}>hrtc.log # Here, so that the caller may move it at once.
     "${on_controller[@]}" "$hrtc" --allow-no-rt --domain "$domain" \
-        "${controller_security[@]}" "$@" >hrtc.log 2>&1 &
+        "${controller_security[@]}" "$@" >&"$log" 2>&1 &
     controller=$!
+    exec {log}>&-
     started+=("$controller")
 }
 # end_hrtc [CODE]: waits until the program of start_hrtc ends by itself with that code, or 0.
