@@ -455,6 +455,11 @@ private:
         last_m_ = output.tools[0].proxy_m;
         was_joined_ = pair.is_joined;
         kind_ = pair.kind;
+        answer_ = "answer " + std::to_string(static_cast<int>(pair.kind)) + ", " +
+                  exactly(pair.lower_m) + " .. " + exactly(pair.upper_m) + ", faults " +
+                  std::to_string(static_cast<std::uint32_t>(output.faults)) + ", pages " +
+                  std::to_string(output.models[0].pages.used) + " of " +
+                  std::to_string(output.models[0].pages.capacity);
     }
 
     void mix(double value)
@@ -799,7 +804,7 @@ private:
         }
         if (!is_done())
         {
-            flag("no exact answer though all budgets are ample");
+            flag("no exact answer though all budgets are ample: " + answer_);
         }
     }
 
@@ -823,6 +828,7 @@ private:
     bool was_joined_{false};
     bool is_meeting_{false}; ///< The tool met a face when that was last checked.
     bool is_lost_{false};    ///< The frame's surface is not the soup's.
+    std::string answer_; ///< The last frame's answer, for messages.
     AnswerKind kind_{AnswerKind::bounded};
     EditFigures figures_;
 };
