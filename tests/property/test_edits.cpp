@@ -828,7 +828,7 @@ private:
     bool was_joined_{false};
     bool is_meeting_{false}; ///< The tool met a face when that was last checked.
     bool is_lost_{false};    ///< The frame's surface is not the soup's.
-    std::string answer_; ///< The last frame's answer, for messages.
+    std::string answer_;     ///< The last frame's answer, for messages.
     AnswerKind kind_{AnswerKind::bounded};
     EditFigures figures_;
 };
