@@ -11,6 +11,7 @@
 /// A surface of sets follows the accepted edits. At the end, steps lead to the same surface from
 /// the start and from the copy.
 #include "rt_core/limits.hpp"
+#include "tests/fuzz/input_parts.hpp"
 #include "tests/fuzz/law.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/edit_coding.hpp"
@@ -23,6 +24,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace tactus::fuzz
@@ -223,19 +225,12 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     using namespace tactus;
-    const std::span<const std::byte> input = std::as_bytes(std::span(data, size));
-    std::size_t at = 0;
-    const auto next = [&]
-    { return at < input.size() ? std::to_integer<unsigned>(input[at++]) : 0U; };
-    fuzz::EditedModel model(fuzz::kRooms.at(next() % fuzz::kRooms.size()));
-    while (at < input.size())
+    fuzz::InputParts input(data, size);
+    fuzz::EditedModel model(fuzz::kRooms.at(input.byte() % fuzz::kRooms.size()));
+    while (!input.is_at_end())
     {
-        const unsigned control = next();
-        const unsigned low = next();
-        const std::size_t stated = low + 256U * next();
-        const auto bytes = input.subspan(at, std::min(stated, input.size() - at));
-        at += bytes.size();
-        model.take({bytes.begin(), bytes.end()}, control);
+        fuzz::InputParts::Part part = input.part();
+        model.take(std::move(part.bytes), part.control);
     }
     model.end();
     return 0;

@@ -10,6 +10,7 @@
 /// A second session has a key. It gets each datagram as it is, then with a tag.
 #include "platform/devices/udp/session.hpp"
 #include "rt_core/base/crc32c.hpp"
+#include "tests/fuzz/input_parts.hpp"
 #include "tests/fuzz/law.hpp"
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <cstring>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -205,19 +207,12 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     using namespace tactus;
-    const std::span<const std::byte> input = std::as_bytes(std::span(data, size));
+    fuzz::InputParts input(data, size);
     fuzz::Conversation conversation;
-    std::size_t at = 0;
-    const auto next = [&]
-    { return at < input.size() ? std::to_integer<unsigned>(input[at++]) : 0U; };
-    while (at < input.size())
+    while (!input.is_at_end())
     {
-        const unsigned control = next();
-        const unsigned low = next();
-        const std::size_t stated = low + 256U * next();
-        const auto bytes = input.subspan(at, std::min(stated, input.size() - at));
-        at += bytes.size();
-        conversation.receive({bytes.begin(), bytes.end()}, control);
+        fuzz::InputParts::Part part = input.part();
+        conversation.receive(std::move(part.bytes), part.control);
     }
     return 0;
 }

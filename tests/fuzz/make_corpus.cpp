@@ -63,7 +63,7 @@ void make_recordings(const fs::path& folder)
     put_seed(folder / "lost_frames", test::example_recording(model, 3));
 }
 
-/// Adds a datagram or an edit as fuzz_udp_session.cpp and fuzz_edit.cpp read them.
+/// Adds a datagram or an edit for fuzz::InputParts.
 template <typename Content>
 void add_part(Bytes& script, unsigned control, const Content& content)
 {

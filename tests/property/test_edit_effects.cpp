@@ -238,6 +238,21 @@ TEST(EditEffects, coarse_faces_round_a_hole_are_split_even_within_the_tolerance)
                 sut.output.pairs[0].kind == AnswerKind::within_tolerance);
 }
 
+TEST(EditEffects, an_edit_draws_on_the_budget_of_its_frame)
+{
+    PressedPlate sut;
+    ASSERT_NO_FATAL_FAILURE(sut.press());
+    OwnedEdit edit = sut.author.removal_of({});
+    ASSERT_NO_FATAL_FAILURE(sut.add_equals(edit, sut.top_faces(1.5 * PressedPlate::kRadius_m)));
+    ASSERT_GT(edit.added.size(), 20U);
+    sut.step(PressedPlate::kPressed_m);
+    const std::uint32_t before = sut.output.work.budget.used();
+    sut.send(edit);
+    sut.step(PressedPlate::kPressed_m);
+    const auto of_faces = static_cast<std::uint32_t>(edit.added.size()) * WorkCost::edited_face;
+    EXPECT_GE(sut.output.work.budget.used(), before + of_faces);
+}
+
 TEST(EditEffects, equal_faces_in_place_of_the_touched_ones_are_felt_as_nothing)
 {
     PressedPlate sut;

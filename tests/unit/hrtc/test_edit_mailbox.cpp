@@ -109,7 +109,7 @@ TEST(EditMailbox, tells_once_the_model_whose_edit_a_frame_refused)
     sut.done(models);
     EXPECT_EQ(sut.take_refused(), ModelId{5});
     EXPECT_FALSE(sut.take_refused());
-    ASSERT_EQ(sut.edits().size(), 1U); // Of a model that the frame does not have.
+    ASSERT_EQ(sut.edits().size(), 1U); // The frame does not have the edit's model.
     sut.done(std::span(models).first(3));
     EXPECT_EQ(sut.take_refused(), ModelId{6});
 }

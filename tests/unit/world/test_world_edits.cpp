@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/shapes/shapes.hpp"
 #include "host_tools/spm_publish/edited_models.hpp"
+#include "platform/world/local_edits.hpp"
 #include "tests/shared/temporary_folder.hpp"
+#include "tests/shared/test_model.hpp"
 #include "tests/unit/world/world_rig.hpp"
 #include "transport/dds/dds_server.hpp"
 #include "transport/store/model_store.hpp"
@@ -55,6 +58,38 @@ Result<double, Refusal> fill_hole(const WorldObject& object)
 }
 
 constexpr double kHole_m3 = kWidth_m * kWidth_m * kDepth_m;
+
+TEST(LocalEdits, a_model_whose_edit_a_frame_refused_gets_no_more)
+{
+    const TestModel& model = test_model("local-edits", make_shape(Shape::plate, 800).value());
+    hrtc::Options options;
+    options.models = {model.path};
+    options.objects.resize(1);
+    options.pool_mib = 4.0;
+    std::vector<ServedModel> served;
+    served.push_back(serve_from_file(model.path, "plate", {}).value());
+    served.back().edit_room = kRoom;
+    const auto controller =
+        hrtc::Controller::create(options, std::move(served), {}, [] { return true; });
+    ASSERT_TRUE(controller) << controller.error().text;
+    auto made = hrtc::LocalEdits::create(*controller.value(), options);
+    ASSERT_TRUE(made) << made.error().text;
+    hrtc::LocalEdits& sut = *made.value();
+    const auto dent = [](SurfaceEditor& editor) {
+        return editor.displace({0.05, 0.05, 0.0}, 0.009, {0.0, 0.0, 0.0002});
+    };
+    const auto first = sut.change(0, dent);
+    ASSERT_TRUE(first) << first.error().text;
+    sut.step();
+    EditMailbox& mailbox = *sut.ports().mailbox;
+    ASSERT_EQ(mailbox.edits().size(), 1U);
+    mailbox.done({});                 // As of a frame that did not make the edit.
+    EXPECT_TRUE(sut.change(0, dent)); // Not known yet.
+    sut.step();
+    const auto late = sut.change(0, dent);
+    ASSERT_FALSE(late);
+    EXPECT_NE(late.error().text.find("a frame has refused an edit"), std::string::npos);
+}
 
 TEST(WorldEdits, a_tool_loses_its_support_and_finds_the_floor_of_the_hole)
 {
