@@ -27,15 +27,15 @@ of_report() {
         import json, sys
         print(json.load(open(sys.argv[1]))["models"][0][sys.argv[2]])' "$@"
 }
-# check_saved: the saved file is a sound model with the server's revision, and has lost the volume
-# that the server's last line has.
+# check_saved INSPECT: the saved file is a sound model with the server's revision, and has lost the
+# volume that the server's last line has.
 check_saved() {
-    local removed lost
+    local program=$1 removed lost
     removed=$(of_edits ' \([0-9.]*\) mm^3 removed')
-    "$inspect" carved.spm --json >carved.json || fault 'carved.spm is not sound'
+    "$program" carved.spm --json >carved.json || fault 'carved.spm is not sound'
     check carved.json revision == "$(of_edits ' \([0-9]*\) edits\{0,1\},')" is_closed == 1
-    "$inspect" bumpy.spm --extract --error 0 -o before.obj >/dev/null
-    "$inspect" carved.spm --extract --error 0 -o after.obj >/dev/null
+    "$program" bumpy.spm --extract --error 0 -o before.obj >/dev/null
+    "$program" carved.spm --extract --error 0 -o after.obj >/dev/null
     lost="$(volume_mm3 before.obj) - $(volume_mm3 after.obj)"
     awk "BEGIN { lost = $lost
                  exit !(lost > 0.98 * $removed && lost < 1.02 * $removed && lost > 0) }" \

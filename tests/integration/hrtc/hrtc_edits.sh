@@ -41,7 +41,7 @@ for report in watching.json late.json; do
         || fault "$report: $(of_report "$report" added_faces) added faces, not $added"
 done
 
-check_saved
+check_saved "$inspect"
 
 # Editors without the right change nothing.
 start_publisher bumpy.spm --edits --edits-from elsewhere:1

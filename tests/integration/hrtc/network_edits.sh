@@ -106,7 +106,7 @@ else
     check hand-1.json carving.sent '>' 0
     grep -Eq ' accepted, [1-9][0-9]* refused' publish.log || fault 'an editor without the right'
 fi
-check_saved
+check_saved "$inspect"
 added=$(of_edits ' \([0-9]*\) of [0-9]* added faces')
 for name in "${carvers[@]}" hand-2; do check "$name.json" models.0.added_faces == "$added"; done
 for name in editor-1 editor-2 hand-2; do
