@@ -231,16 +231,19 @@ void Pair::rank(RegionRanking& ranking) noexcept
 }
 
 /// Radius round the core's centre within which the nearest surface may lie, if that is beyond the
-/// reach. 0 if the distance is not requested or nothing is known.
+/// reach. 0 if the distance is not requested or nothing is known. Without an upper bound, as where
+/// edits have changed all coarse faces that are near, it is twice the lower bound: each time that
+/// all within it is exact, the bounds close or the lower one has doubled.
 double Pair::distance_reach_m() const noexcept
 {
     if (!tells_distance() || !region_of_interest_.has_known())
     {
         return 0.0;
     }
-    const double upper_m = region_of_interest_.from_motion().upper_m;
-    return upper_m > region_of_interest_.reach_m() && upper_m < kInfinity
-               ? region_of_interest_.core().radius() + upper_m
+    const DistanceAnswer known = region_of_interest_.from_motion();
+    const double nearest_m = known.upper_m < kInfinity ? known.upper_m : 2.0 * known.lower_m;
+    return nearest_m > region_of_interest_.reach_m()
+               ? region_of_interest_.core().radius() + nearest_m
                : 0.0;
 }
 

@@ -144,7 +144,8 @@ public:
         found.dropped_m = triangles_.dropped_m();
         DistanceAnswer answer = answer_from(found, reach_);
         answer.tool_point_m = core_.center();
-        answer.tolerated_m = static_cast<double>(error_in_quanta(largest_tolerated_)) * quantum_;
+        answer.tolerated_m = static_cast<double>(error_in_quanta(largest_tolerated_)) * quantum_ +
+                             (is_unmeasured_ ? little_m_ : 0.0);
         if (is_nearest_proven(found))
         {
             answer.tool_point_m = nearest_.on_shape;
@@ -322,6 +323,7 @@ private:
         }
         // The face does not make the answer exact if a nearer exact face may have been left out.
         const bool is_exact = !is_left_out || lower >= nearest_.distance - kTied * quantum_;
+        is_unmeasured_ = is_unmeasured_ || !is_exact;
         double& least = face.error == 0 && is_exact ? exact_lower_ : tolerated_lower_;
         least = std::min(least, lower);
         met_ += meets ? 1U : 0U;
@@ -429,7 +431,8 @@ private:
     /// Lower bound on the distance from the measured faces of the surface.
     double measured_lower_{kInfinity};
     ErrorCode largest_tolerated_{0};
-    std::uint32_t met_{0}; ///< Number of faces of the surface that meet the core.
+    bool is_unmeasured_{false}; ///< A face that may be nearer than nearest_ was left out.
+    std::uint32_t met_{0};      ///< Number of faces of the surface that meet the core.
     ClosestPoints nearest_{.distance = kInfinity};
     /// Direction from the core to nearest_, in the axes of the core's box; of length 1, or 0 if
     /// unknown.

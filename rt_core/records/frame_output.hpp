@@ -102,7 +102,8 @@ struct PairOutput
     /// All original faces within this distance of the core are active and exact, or represented by
     /// faces with an error of at most tolerated_m.
     double certified_radius_m{0.0};
-    /// Largest error of a face that counts as the surface; 0: all are exact.
+    /// Largest error of a face that counts as the surface, plus what faces that were not measured
+    /// may change; 0: all are exact. L is at most twice this below the distance.
     double tolerated_m{0.0};
     FaceId nearest_face{};               ///< None if no surface is in reach.
     Vec3 nearest_point_m{0.0, 0.0, 0.0}; ///< Point of nearest_face; undefined without one.

@@ -45,7 +45,8 @@ struct DistanceAnswer
     /// All original faces within this distance of the core are active and exact, or represented by
     /// faces within the tolerance; negative if not even the touching faces are.
     double certified_radius_m{-1.0};
-    /// The largest error of a face that was checked and counts as the surface.
+    /// The largest error of a face that was checked and counts as the surface, plus the change of
+    /// the answer that faces may cause which were not measured.
     double tolerated_m{0.0};
     FaceId nearest_face{};               ///< Nearest face; none if none is in reach.
     Vec3 tool_point_m{0.0, 0.0, 0.0};    ///< Nearest point of the core.
