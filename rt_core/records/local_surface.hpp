@@ -27,10 +27,15 @@ struct LocalTriangle
 /// Kinds of answers (docs/accuracy.md).
 enum class AnswerKind : std::uint8_t
 {
-    exact,     ///< L and U come from exact faces and differ only by the kernel's error law.
-    separated, ///< No contact: L is above the tool's reach, proven without refining.
-    bounded,   ///< Only the bounds L < U on the distance are proven; contact is undecided.
-    stale, ///< The pose is too old or of another model revision; L and U hold for that pose only.
+    /// L and U come from exact faces and differ only by the kernel's error law and, with a
+    /// tolerance, by a millionth of a quantum within which faces count as equally near.
+    exact,
+    /// No contact: L is above the tool's reach, proven without refining.
+    separated,
+    /// Only the bounds L < U on the distance are proven; contact is undecided.
+    bounded,
+    /// The pose is too old or of another model revision; L and U hold for that pose only.
+    stale,
     /// Like exact, but coarse faces with an error within the tolerance count as the surface: their
     /// error is subtracted from L, and U comes from exact faces and from corners.
     within_tolerance,

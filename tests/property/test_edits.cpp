@@ -626,7 +626,12 @@ private:
 
     void judge_kind(const PairOutput& pair, double truth_m)
     {
-        if (pair.kind == AnswerKind::exact && !(pair.upper_m - pair.lower_m <= 2.0 * slack_m(pair)))
+        // With a tolerance, faces within a millionth of a quantum count as equally near.
+        const double tied_m = trial_.force_tolerance_n > 0.0
+                                  ? 1e-6 * static_cast<double>(soup_.source().quantum_m)
+                                  : 0.0;
+        if (pair.kind == AnswerKind::exact &&
+            !(pair.upper_m - pair.lower_m <= 2.0 * slack_m(pair) + tied_m))
         {
             flag("an exact answer from " + exactly(pair.lower_m) + " to " + exactly(pair.upper_m));
         }
