@@ -130,17 +130,6 @@ PrimId AbTree::any_prim() const noexcept
                      .prims[static_cast<std::size_t>(std::countr_zero(blocks_[ref.index()].faces))];
 }
 
-void AbTree::move_vertex(std::uint32_t block, std::uint32_t row, const Vec3f& position_m) noexcept
-{
-    TACTUS_ASSERT(is_block_in_use(block));
-    TACTUS_ASSERT(((std::uint32_t{blocks_[block].vertices} >> row) & 1U) != 0);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-        blocks_[block].coordinates[axis][row] = position_m[axis];
-    }
-    mark(TreeRef::to_block(block));
-}
-
 void AbTree::place(const ChangedFace& face) noexcept
 {
     if (root_.is_none())

@@ -80,11 +80,6 @@ public:
     /// Removes the prim's face, placed or not.
     void remove(PrimId prim) noexcept TACTUS_NONBLOCKING;
 
-    /// Moves the vertex in `row` of a block (leaf_of() / 16), with all faces of the block that use
-    /// it. For deforming meshes, whose vertices have a row in each block that uses them.
-    void move_vertex(std::uint32_t block, std::uint32_t row,
-                     const Vec3f& position_m) noexcept TACTUS_NONBLOCKING;
-
     /// Marks all blocks and nodes of the tree for refit().
     void mark_all() noexcept TACTUS_NONBLOCKING;
 

@@ -100,14 +100,4 @@ struct GrowthCase
 /// The same near queries on four sizes of the bumpy sphere.
 void run_growth_case(const CaseContext& context, const GrowthCase& test_case);
 
-/// Goals in microseconds.
-struct RefitCase
-{
-    SceneSource scene;
-    double clustered{kNoGoal};
-    double moved_median{kNoGoal}, moved_worst{kNoGoal};
-};
-/// Refit after a local change, at a hundred places of a fully refined model.
-void run_refit_case(const CaseContext& context, const RefitCase& test_case);
-
 } // namespace tactus::bench

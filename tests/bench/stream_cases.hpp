@@ -83,14 +83,4 @@ struct FanOutCase
 /// spm_publish and many clients on loopback, each at a rate.
 void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case);
 
-struct BesideDdsCase
-{
-    SceneSource scene;
-    /// A client in another thread of the process requests as fast as chunks arrive.
-    bool is_beside;
-};
-/// Frames of a slide: states and counters are the same with and without DDS traffic. With --count,
-/// each takes one pass.
-void run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case);
-
 } // namespace tactus::bench

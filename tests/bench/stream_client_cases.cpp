@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// A publisher and many clients on loopback: throughput, number of clients, and effect on frames.
+/// A publisher and many clients on loopback: throughput and number of clients.
 
-#include "tests/bench/asking_client.hpp"
-#include "tests/bench/frame_replay.hpp"
 #include "tests/bench/published.hpp"
 #include "tests/bench/stream_cases.hpp"
-#include "transport/dds/dds_client.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <atomic>
-#include <cstdlib>
 #include <fstream>
-#include <memory>
-#include <optional>
-#include <thread>
 
 namespace tactus::bench
 {
@@ -133,86 +125,6 @@ void run_fan_out_case(const CaseContext& context, const FanOutCase& test_case)
         before_ms = p99_ms;
     }
     rows.add("server", resident_mib(server.id()), "MiB");
-}
-
-namespace
-{
-
-/// Requests chunks in its own thread while it exists.
-class Flood
-{
-public:
-    static std::unique_ptr<Flood> begin()
-    {
-        auto flood = std::make_unique<Flood>();
-        ::unsetenv("CYCLONEDDS_URI"); // The environment is that of the programs on loopback.
-        flood->client_ = needed(dds::DdsClient::create(dds_domain(), "flood", {}));
-        flood->model_ = needed(flood->client_->find({"model", std::nullopt}, kStartTimeout));
-        flood->asking_.emplace(flood->model_, 0.0);
-        flood->thread_ = std::thread([&self = *flood] { self.asking_->run(1e9, self.stop_); });
-        return flood;
-    }
-    Flood() = default;
-    Flood(const Flood&) = delete;
-    Flood& operator=(const Flood&) = delete;
-    ~Flood()
-    {
-        stop_ = true;
-        if (thread_.joinable())
-        {
-            thread_.join();
-        }
-    }
-    /// Ends the thread; returns the throughput in MB/s.
-    [[nodiscard]] double end()
-    {
-        stop_ = true;
-        thread_.join();
-        const Json report = Json::parse(asking_->to_json());
-        return report["link_bytes"].get<double>() * 1e-6 / report["seconds"].get<double>();
-    }
-
-private:
-    std::atomic<bool> stop_{false};
-    std::unique_ptr<dds::DdsClient> client_;
-    ServedModel model_;
-    std::optional<AskingClient> asking_;
-    std::thread thread_;
-};
-
-} // namespace
-
-void run_beside_dds_case(const CaseContext& context, const BesideDdsCase& test_case)
-{
-    constexpr double kSpeed_diag_per_s = 0.5;
-    constexpr std::uint32_t kFrames = 5'000;
-    constexpr std::uint32_t kQuickFrames = 500;
-    constexpr std::uint32_t kPasses = 5;
-    const Scene& scene = context.scenes.get(test_case.scene);
-    const std::uint32_t frames = context.options.frames_or(kFrames, kQuickFrames);
-    const FrameRun run = make_slide(scene, kSpeed_diag_per_s, tour_splits(kSpeed_diag_per_s),
-                                    std::size_t{4} << 20U, frames);
-    const test::TemporaryFolder folder("beside-dds");
-    std::optional<Program> server;
-    std::unique_ptr<Flood> flood;
-    if (test_case.is_beside)
-    {
-        server.emplace(publish(scene, {}, folder.path()));
-        flood = Flood::begin();
-    }
-    FrameReplay replay(run);
-    replay.run(context.options.passes_or(kPasses, 2));
-    Row common = context.common_row(scene.model.name, "frames beside DDS");
-    common.frames = run.counted();
-    common.hash = replay.hash();
-    CaseRows rows(context.rows, common);
-    const WorkCounters& work = replay.work().counters;
-    rows.add("splits", work.splits, "");
-    rows.add("nodes", work.nodes_visited, "");
-    rows.add("triangles", work.triangles_tested, "");
-    rows.add("p50", spread_of(replay.sum_us(CacheState::warm).least()).p50, "us");
-    rows.add("p99", spread_of(replay.sum_us(CacheState::warm).least()).p99, "us");
-    rows.add("DDS", flood == nullptr ? 0.0 : flood->end(), "MB/s");
 }
 
 } // namespace tactus::bench

@@ -34,7 +34,6 @@ std::vector<Case> frame_cases()
               {kFineIgea, 0.5, 128, 8 * kMiB, 30.0, 80.0, 90.0, 250.0}),
         make_case("memory-4.3M", When::full_only, run_memory_case,
                   MemoryCase{kFineIgea, 0.1, 128, 4.0}),
-        make_case("refit-bunny", When::always, run_refit_case, RefitCase{kBunny, 0.7, 3.5, 6.0}),
         make_case("static-bunny", When::always, run_static_case,
                   StaticCase{kBunny, 0.6, 0.45, 0.3, 2.0}),
         make_case("static-4.3M", When::full_only, run_static_case,
@@ -42,7 +41,6 @@ std::vector<Case> frame_cases()
         make_case("static-growth", When::full_only, run_growth_case, GrowthCase{3.0}),
         frame("frame-tiny", When::named_only,
               {kTiny, 0.1, 64, kMiB, kNoGoal, kNoGoal, kNoGoal, kNoGoal}),
-        make_case("refit-tiny", When::named_only, run_refit_case, RefitCase{kTiny}),
         make_case("static-tiny", When::named_only, run_static_case, StaticCase{kTiny}),
     };
 }

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <vector>
 
@@ -150,45 +149,6 @@ TEST_F(RigidRest, a_box_and_a_capsule_on_a_plate_and_over_its_edge)
     tell("a plate");
     EXPECT_LT(errors.force, 5e-4);
     EXPECT_LT(errors.torque, 5e-3);
-}
-
-TEST_F(RigidRest, flat_on_a_plate_is_at_the_radius_pushes_by_the_depth_and_lets_go_at_once)
-{
-    const TestModel& plate = test_model("rest-plate", make_shape(Shape::plate, 2'000).value(), 100);
-    const Vec3 half(0.012, 0.008, 0.004);
-    for (const SolidCore& tool :
-         {box_core("box", half, 0.001), box_core("box without a radius", 2.0 * half, 0.0)})
-    {
-        SCOPED_TRACE(tool.name);
-        FrameRig rig = rig_of(tool, plate);
-        ToolState state;
-        const Vec3 above(0.05, 0.043, 0.05);
-        const Vec3 goal = above - Vec3(0, 0, 0.045);
-        FrameOutput output;
-        for (int i = 0; i < 600; ++i)
-        {
-            state.position_m = above + std::min(1.0, i / 300.0) * (goal - above) - origin_of(plate);
-            output = rig.step(std::span(&state, 1), {});
-        }
-        const ToolOutput pressed = output.tools[0];
-        const double radius_m = std::max(tool.radius_m, kLeastSkin * 2.0 * half.norm());
-        const double depth_m = pressed.proxy_m.z() - state.position_m.z();
-        EXPECT_TRUE(pressed.in_contact && !pressed.halted);
-        EXPECT_NEAR(output.pairs[0].lower_m, radius_m, 1e-3 * radius_m);
-        EXPECT_GT(depth_m, 0.002);
-        EXPECT_LE((pressed.force_n - Vec3(0, 0, 500.0 * depth_m)).norm(), 1e-3);
-        EXPECT_LE(pressed.torque_nm.norm(), 1e-4);
-        EXPECT_LE((pressed.proxy_rotation - Mat3::Identity()).norm(), 1e-4);
-        state.position_m = above + Vec3(0, 0, 0.2) - origin_of(plate);
-        ToolOutput away;
-        for (int i = 0; i < 100; ++i)
-        {
-            away = rig.step(std::span(&state, 1), {}).tools[0];
-        }
-        EXPECT_EQ(away.proxy_m, state.position_m);
-        EXPECT_EQ(away.force_n, Vec3(0, 0, 0));
-        EXPECT_EQ(away.torque_nm, Vec3(0, 0, 0));
-    }
 }
 
 TEST_F(RigidRest, a_peg_with_a_fifth_of_a_millimetre_of_room)

@@ -132,31 +132,6 @@ TEST(SceneChanges, an_object_that_goes_under_a_tool_lets_its_force_fade)
     EXPECT_EQ(sut.sent_n, Vec3(0.0, 0.0, 0.0));
 }
 
-TEST(SceneChanges, an_object_that_comes_round_a_tool_makes_no_force_until_the_tool_is_clear_of_it)
-{
-    Pressed sut;
-    sut.press();
-    sut.rig->change(sut.change(SceneChangeKind::object_goes, 0));
-    sut.step(sut.pressed_m());
-    sut.rig->change(sut.change(SceneChangeKind::object_comes, 1)); // The pose is the same.
-    for (int i = 0; i < 100; ++i)
-    {
-        sut.step(sut.pressed_m() - 0.002);
-        ASSERT_EQ(sut.output.tools[0].force_n, Vec3(0.0, 0.0, 0.0));
-        ASSERT_FALSE(sut.output.tools[0].in_contact);
-        ASSERT_EQ(sut.output.pairs.size(), 1U);
-        ASSERT_FALSE(sut.output.pairs[0].is_joined);
-    }
-    for (int i = 0; i < 100 && !sut.output.pairs[0].is_joined; ++i)
-    {
-        sut.step(sut.pressed_m() - 0.002 + 0.0002 * i);
-        ASSERT_EQ(sut.output.tools[0].force_n, Vec3(0.0, 0.0, 0.0));
-    }
-    EXPECT_GT(sut.output.pairs[0].lower_m, 0.02 * sut.model.diagonal_m);
-    sut.press();
-    EXPECT_GT(sut.sent_n.norm(), 0.3);
-}
-
 /// Random depth and speed, with an immediate next touch: from the frame on in which an object
 /// surrounded a tool, the force grows at most by the spring's part of the hand's motion and by the
 /// return of a lost force (ForceFader).

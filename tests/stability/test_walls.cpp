@@ -7,7 +7,6 @@
 
 #include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/operator_rotation.hpp"
-#include "platform/machine/allocation_counter.hpp"
 #include "rt_core/force/force_conditioner.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/math/infinity.hpp"
@@ -336,34 +335,6 @@ TEST(PassivityObserver, is_off_by_no_more_than_the_quantum_explains)
     const double force_way_n = 2.0 * 12.0 * (figures.contacts + 1.0);
     EXPECT_LT(figures.observer_error_j, 0.5 * kOmegaClass.quantum_m * force_way_n);
     EXPECT_GT(figures.observer_error_j, 0.0);
-}
-
-TEST(ForceConditioner, leaves_the_heap_alone)
-{
-    if (!allocation_counter::available())
-    {
-        GTEST_SKIP() << "no allocation counter in this build";
-    }
-    ForceConditioner sut({kOmegaClass, 1e-3, 0.0, true});
-    Random random(7);
-    allocation_counter::mark_this_thread(true);
-    const std::uint64_t before = allocation_counter::of_this_thread().allocations;
-    for (int i = 0; i < 1'000; ++i)
-    {
-        CommandedForce commanded;
-        commanded.force_n = random.in_cube(5.0);
-        commanded.position_m = random.in_cube(1e-3);
-        commanded.stiffness_n_per_m = 1'000.0;
-        static_cast<void>(condition(sut, commanded));
-        if (i % 100 == 99)
-        {
-            commanded.force_n = random.in_cube(5.0);
-            sut.follow(commanded.spring(), i % 200 == 99);
-        }
-    }
-    const std::uint64_t after = allocation_counter::of_this_thread().allocations;
-    allocation_counter::mark_this_thread(false);
-    EXPECT_EQ(after, before);
 }
 
 TEST(DeviceClasses, have_the_caps_of_the_page)

@@ -168,17 +168,6 @@ TEST(Extract, the_mesh_is_manifold_at_every_cut)
     }
 }
 
-TEST(Extract, the_oracle_tells_what_is_not_manifold)
-{
-    const auto fault = [](const std::vector<test::Corners>& faces)
-    { return test::manifold_fault(faces); };
-    EXPECT_EQ(fault({{0, 1, 2}, {0, 1, 3}}), "edge 0 1");
-    EXPECT_EQ(fault({{0, 1, 2}, {2, 3, 4}, {0, 5, 6}}), "vertex 0");
-    EXPECT_EQ(fault({{0, 1, 2}, {0, 3, 4}}), "vertex 0");
-    EXPECT_EQ(fault({{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}), "");
-    EXPECT_EQ(fault({{0, 2, 3}, {0, 1, 2}, {0, 3, 4}}), "");
-}
-
 TEST(Extract, well_known_meshes_give_manifolds)
 {
     Random random(2);

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// I10: the record that changed a face last is its finest corner. Also the errors of faces.
+/// Errors of faces, and the greatest depth.
 
 #include "host_tools/encode/face_history.hpp"
-#include "host_tools/encode/replay.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <set>
 
 namespace tactus
@@ -17,38 +15,6 @@ namespace tactus
 
 namespace
 {
-
-TEST(FaceHistory, the_record_that_last_changed_a_face_is_its_finest_corner)
-{
-    for (const auto& model : sample_models())
-    {
-        const DecodedModel& decoded = *model->decoded;
-        const ModelCounts counts = decoded.header().counts();
-        Replay replay(decoded);
-        for (const RecordId id : in_dependency_order(decoded))
-        {
-            ASSERT_FALSE(replay.split(id)) << model->name;
-            const VsplitRecord& record = decoded.record(id);
-            for (std::uint32_t place = 0; place < record.star_end(); ++place)
-            {
-                if (record.star[place].is_none())
-                {
-                    continue;
-                }
-                std::uint32_t owners = 0;
-                for (const VertexId corner : replay.corners(record.star[place]))
-                {
-                    owners += corner == counts.vertex_of(id) ? 1U : 0U;
-                    const bool is_finer =
-                        !counts.is_base(corner) && corner != counts.vertex_of(id) &&
-                        decoded.record(counts.record_of(corner)).depth >= record.depth;
-                    EXPECT_FALSE(is_finer) << model->name << ", record " << id.value;
-                }
-                EXPECT_EQ(owners, 1U) << model->name << ", record " << id.value;
-            }
-        }
-    }
-}
 
 TEST(FaceHistory, only_faces_of_the_source_have_error_zero)
 {

@@ -59,6 +59,13 @@ std::string with_line_ends(const std::string& text, const std::string& end)
     return other;
 }
 
+std::string in_capitals(std::string text)
+{
+    std::ranges::transform(text, text.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return text;
+}
+
 struct Dialect
 {
     std::string name; ///< Name with extension.
@@ -108,6 +115,8 @@ std::vector<Dialect> off_dialects()
         {"behind.off", "OFF\n8 6 12\n" + body + "0 0\n", 1},
         {"padded.off", "OFF\n8 6 12\n" + body + std::string(40, '\0'), 2},
         {"mark.off", "\xEF\xBB\xBFOFF\n8 6 12\n" + body},
+        {"comments.off", "# a\n\nOFF # b\n# c\n 8 6 12 # d\n\n" + cube_lines("", " # e") + "# f\n" +
+                             quad_lines("4 {} {} {} {}#g\n\n")},
     };
 }
 
@@ -115,13 +124,10 @@ std::vector<Dialect> obj_dialects()
 {
     const std::string vertices = cube_lines("v ");
     const std::string faces = quad_lines("f {} {} {} {}\n", 1);
-    std::string capitals = vertices + "VN 0 0 1\n" + faces;
-    std::ranges::transform(capitals, capitals.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
     return {
         {"plain.obj", vertices + faces},
         {"old_mac.obj", with_line_ends(vertices + faces, "\r")},
-        {"capitals.obj", capitals},
+        {"capitals.obj", in_capitals(vertices + "VN 0 0 1\n" + faces)},
         {"continued.obj", vertices + quad_lines("f {} {} \\\n {} {}\n", 1)},
         {"continued_and_glued.obj", vertices + quad_lines("f {} {}\\\n{} {}\n", 1)},
         {"continued_often.obj", vertices + quad_lines("f {}\\\n\\\n {}\\\n{} {}\n", 1)},
@@ -134,14 +140,18 @@ std::vector<Dialect> obj_dialects()
         {"continued_normals.obj", vertices + "vn 0 0\\\n1\nvt 0 \\\n 0\nl 1 2\\\n3\n" + faces, 1},
         {"backslash_in_names.obj",
          "# C:\\a\\\nmtllib C:\\b\\\ng C:\\c\\\n#x\\\n" + vertices + faces},
-        {"relative.obj", vertices + quad_lines("f {} {} {} {}\n", -8)},
+        {"relative.obj", vertices + quad_lines("f {} {} {} {}\n", -8) + "v 9 9 9\n"},
+        {"mark.obj", "\xEF\xBB\xBF" + vertices + faces},
+        {"places_of_pictures.obj", "mtllib x.mtl\no thing\ng a b\ns off\nusemtl red\nvt 0 0\n" +
+                                       vertices +
+                                       quad_lines("f {}/1 {}/1 {}/1 {}/1 # a face\n", 1)},
         {"colours.obj", cube_lines("v ", " 0.5 0.25 1") + faces},
         {"weight_1.obj", cube_lines("v ", " 1.0") + faces},
         {"weight_2.obj", cube_lines("v ", " 2.0", 2.0) + faces, 1},
         {"weight_and_colours.obj", cube_lines("v ", " 2 0.5 0.5 0.5", 2.0) + faces, 1},
         {"no_normals.obj", vertices + "vn 0 0 1\n" + quad_lines("f {}//1 {}//1 {}//1 {}//1\n", 1)},
         {"faces_first.obj", faces + vertices},
-        {"points_and_lines.obj", vertices + "p 1\nl 1 2 3\n" + faces, 1},
+        {"points_and_lines.obj", vertices + "p 1\nl 1 2 3\nsurf 0 1 0 1 1 2\n" + faces, 1},
         {"tabs.obj",
          with_line_ends(cube_lines("v\t", "\t"), " \n") + quad_lines("f\t{}\t{}\t{}\t{}  \n", 1)},
         {"closed_polygons.obj",
@@ -181,6 +191,7 @@ std::vector<Dialect> ply_dialects()
     return {
         {"plain.ply", whole},
         {"dos.ply", with_line_ends(whole, "\r\n")},
+        {"mark.ply", "\xEF\xBB\xBF" + whole},
         {"old_mac.ply", with_line_ends(whole, "\r")},
         {"capital_names.ply", capital_names},
         {"capital_header.ply", capital_header},
@@ -273,6 +284,8 @@ std::vector<Dialect> stl_dialects()
         {"binary.stl", binary},
         {"binary_solid.stl", as_binary_stl(cube, "solid cube")},
         {"old_mac.stl", with_line_ends(text, "\r")},
+        {"dos.stl", with_line_ends(text, "\r\n")},
+        {"capitals.stl", in_capitals(text)},
         {"mark.stl", "\xEF\xBB\xBF" + text},
         {"blank_first.stl", "\n  " + text},
         {"one_line.stl", one_line},

@@ -21,42 +21,6 @@ std::vector<Face> faces_of(const std::string& name, const std::string& text)
 
 const std::string kObjSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-TEST(ReadObj, cuts_polygons_into_triangles)
-{
-    const auto sut = read_bytes("a.obj", kObjSquare + "f 1 2 3 4\n");
-    ASSERT_TRUE(sut);
-    EXPECT_EQ(sut.value().mesh.faces, (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
-    EXPECT_TRUE(sut.value().notes.empty());
-}
-
-TEST(ReadObj, reads_negative_and_later_indices)
-{
-    EXPECT_EQ(faces_of("a.obj", kObjSquare + "f -4 -3 -2\n"), (std::vector<Face>{{0, 1, 2}}));
-    EXPECT_EQ(faces_of("a.obj", "f 1 2 3\n" + kObjSquare), (std::vector<Face>{{0, 1, 2}}));
-    // Negative numbers count from the vertices so far, not from the whole file.
-    EXPECT_EQ(faces_of("a.obj", kObjSquare + "f -4 -3 -2\nv 9 9 9\n"),
-              (std::vector<Face>{{0, 1, 2}}));
-}
-
-TEST(ReadObj, passes_over_texture_coordinates_normals_groups_and_materials)
-{
-    const std::string extras =
-        "mtllib x.mtl\no thing\ng a b\ns off\nusemtl red\nvt 0 0\nvn 0 0 1\n";
-    const std::vector<Face> one{{0, 1, 2}};
-    EXPECT_EQ(faces_of("a.obj", extras + kObjSquare + "f 1/1 2/1 3/1\n"), one);
-    EXPECT_EQ(faces_of("a.obj", extras + kObjSquare + "f 1//1 2//1 3//1 # a face\n"), one);
-    EXPECT_EQ(faces_of("a.obj", extras + kObjSquare + "f 1/1/1 2/1/1 3/1/1\n"), one);
-    EXPECT_EQ(faces_of("a.obj", kObjSquare + "f 1 2 \\\n 3\n"), one);
-}
-
-TEST(ReadObj, notes_points_lines_and_free_forms_that_it_leaves_out)
-{
-    const auto sut =
-        read_bytes("a.obj", kObjSquare + "l 1 2\np 1\nsurf 0 1 0 1 1 2 3 4\nf 1 2 3\n");
-    ASSERT_TRUE(sut);
-    EXPECT_EQ(sut.value().notes.size(), 1U);
-}
-
 TEST(ReadObj, notes_lines_that_it_does_not_understand)
 {
     using namespace std::string_literals;
@@ -65,45 +29,6 @@ TEST(ReadObj, notes_lines_that_it_does_not_understand)
     EXPECT_EQ(sut.value().mesh.faces, (std::vector<Face>{{0, 1, 2}}));
     EXPECT_EQ(sut.value().notes,
               std::vector<std::string>{"2 lines not understood, the first is line 5"});
-}
-
-TEST(ReadText, passes_over_a_byte_order_mark)
-{
-    const std::string mark = "\xEF\xBB\xBF";
-    const auto obj = read_bytes("a.obj", mark + kObjSquare + "f 1 2 3\n");
-    ASSERT_TRUE(obj);
-    EXPECT_EQ(obj.value().mesh.positions.size(), 4U);
-    EXPECT_TRUE(obj.value().notes.empty());
-    EXPECT_EQ(faces_of("a.off", mark + "OFF 3 1 0\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"),
-              (std::vector<Face>{{0, 1, 2}}));
-    EXPECT_EQ(faces_of("a.ply", mark + "ply\nformat ascii 1.0\nelement vertex 3\n"
-                                       "property float x\nproperty float y\nproperty float z\n"
-                                       "element face 1\nproperty list uchar int vertex_indices\n"
-                                       "end_header\n0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n"),
-              (std::vector<Face>{{0, 1, 2}}));
-}
-
-TEST(ReadOff, passes_over_comments_blank_lines_and_colours)
-{
-    const std::string text =
-        "# first\n\nOFF # keyword\n# counts\n 4 2 0 # v f e\n\n0 0 0\n1 0 0 # x\n"
-        "1 1 0 255 0 0\n0 1 0\n# faces\n3 0 1 2 0.5 0.5 0.5\n\n3 0 2 3#end\n";
-    EXPECT_EQ(faces_of("a.off", text), (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
-}
-
-TEST(ReadOff, takes_counts_on_the_keyword_line_and_polygons)
-{
-    EXPECT_EQ(faces_of("a.off", "COFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n"),
-              (std::vector<Face>{{0, 1, 2}, {0, 2, 3}}));
-}
-
-TEST(ReadStl, joins_several_solids_and_ignores_letter_case)
-{
-    const std::string one = as_ascii_stl(tetrahedron());
-    std::string capital = one;
-    std::transform(capital.begin(), capital.end(), capital.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    EXPECT_EQ(faces_of("a.stl", one + capital).size(), 8U);
 }
 
 TEST(ReadStl, does_not_mind_normals_that_are_not_numbers)

@@ -6,7 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace tactus::test
 {
@@ -38,59 +41,32 @@ TEST(EdgeMatch, finds_the_face_across_each_edge)
     EXPECT_EQ(sut.value(), expected);
 }
 
-TEST(EdgeMatch, refuses_a_mesh_without_faces)
+TEST(EdgeMatch, refuses_what_is_no_manifold_by_what_is_wrong)
 {
-    EXPECT_EQ(refusal(five_points()), "the mesh has 0 faces; allowed are 1 to 536870910");
-}
-
-TEST(EdgeMatch, refuses_a_vertex_out_of_range)
-{
+    const std::vector<std::pair<decltype(QuantisedMesh::faces), std::string>> cases{
+        {{}, "the mesh has 0 faces; allowed are 1 to 536870910"},
+        {{{0, 1, 2}, {0, 2, 5}}, "face 1 names vertex 5, but the mesh has 5 vertices"},
+        {{{0, 1, 2}, {3, 1, 3}}, "face 1 names a vertex twice; its three corners must differ"},
+        {{{0, 1, 2}, {1, 0, 3}, {1, 0, 4}},
+         "the edge between vertices 0 and 1 has more than two faces: 0, 1 and 2"},
+        {{{0, 1, 2}, {0, 1, 3}},
+         "faces 0 and 1 run along the edge between vertices 0 and 1 in the same direction"},
+        {{{0, 1, 2}, {0, 3, 4}}, "the faces of vertex 0 form more than one fan"},
+        {{{0, 1, 2}, {2, 1, 3}}, "vertex 4 belongs to no face"}};
     QuantisedMesh mesh = five_points();
-    mesh.faces = {{0, 1, 2}, {0, 2, 5}};
-    EXPECT_EQ(refusal(mesh), "face 1 names vertex 5, but the mesh has 5 vertices");
-}
-
-TEST(EdgeMatch, refuses_a_face_that_names_a_vertex_twice)
-{
-    QuantisedMesh mesh = five_points();
-    mesh.faces = {{0, 1, 2}, {3, 1, 3}};
-    EXPECT_EQ(refusal(mesh), "face 1 names a vertex twice; its three corners must differ");
-}
-
-TEST(EdgeMatch, refuses_a_position_off_the_grid)
-{
-    QuantisedMesh mesh = five_points();
-    mesh.faces = {{0, 1, 2}};
-    mesh.positions[4][1] = -1;
-    EXPECT_EQ(refusal(mesh), "vertex 4 is off the grid; coordinates are 0 to 16777215");
-    mesh.positions[4][1] = 1 << 24;
-    EXPECT_EQ(refusal(mesh), "vertex 4 is off the grid; coordinates are 0 to 16777215");
-}
-
-TEST(EdgeMatch, refuses_an_edge_with_three_faces)
-{
-    QuantisedMesh mesh = five_points();
-    mesh.faces = {{0, 1, 2}, {1, 0, 3}, {1, 0, 4}};
-    EXPECT_EQ(refusal(mesh),
-              "the edge between vertices 0 and 1 has more than two faces: 0, 1 and 2");
-}
-
-TEST(EdgeMatch, refuses_two_faces_that_run_along_an_edge_in_the_same_direction)
-{
-    QuantisedMesh mesh = five_points();
-    mesh.faces = {{0, 1, 2}, {0, 1, 3}};
-    EXPECT_EQ(refusal(mesh), "faces 0 and 1 run along the edge between vertices 0 and 1 in the "
-                             "same direction");
-}
-
-TEST(EdgeMatch, refuses_a_vertex_with_two_fans)
-{
-    QuantisedMesh mesh = five_points();
-    mesh.faces = {{0, 1, 2}, {0, 3, 4}};
-    EXPECT_EQ(refusal(mesh), "the faces of vertex 0 form more than one fan");
-    QuantisedMesh closed = make_sphere(180, 0);
-    const auto other = join(closed, closed, 0);
-    QuantisedMesh touching = other;
+    for (const auto& [faces, words] : cases)
+    {
+        mesh.faces = faces;
+        EXPECT_EQ(refusal(mesh), words);
+    }
+    for (const std::int32_t off : {-1, 1 << 24})
+    {
+        mesh.positions[4][1] = off;
+        EXPECT_EQ(refusal(mesh), "vertex 4 is off the grid; coordinates are 0 to 16777215");
+    }
+    // Two closed meshes that touch in a vertex.
+    const QuantisedMesh closed = make_sphere(180, 0);
+    QuantisedMesh touching = join(closed, closed, 0);
     const auto first = static_cast<std::uint32_t>(closed.positions.size());
     for (auto& face : touching.faces)
     {
@@ -101,13 +77,6 @@ TEST(EdgeMatch, refuses_a_vertex_with_two_fans)
     }
     touching.positions.erase(touching.positions.begin() + first);
     EXPECT_EQ(refusal(touching), "the faces of vertex 0 form more than one fan");
-}
-
-TEST(EdgeMatch, refuses_a_vertex_without_faces)
-{
-    QuantisedMesh mesh = five_points();
-    mesh.faces = {{0, 1, 2}, {2, 1, 3}};
-    EXPECT_EQ(refusal(mesh), "vertex 4 belongs to no face");
 }
 
 } // namespace tactus::test

@@ -227,24 +227,6 @@ TEST_P(HapticLoopTorqueTrouble, fades_the_torque_as_the_force_and_brings_it_back
         { return event.frame <= known + 1 && has_cause(event.causes, GetParam().cause); }));
 }
 
-TEST(HapticLoop, a_stall_takes_as_much_of_the_torque_as_of_the_force)
-{
-    LoopRigOptions options = with_a_lever(kRotationTroubles[0]);
-    options.tamper = leave;
-    options.late_wakes = {{kSettled, milliseconds(10)}};
-    LoopRig rig(options);
-    rig.run();
-    const std::vector<SafetyEvent> events = rig.events();
-    const auto noted = std::ranges::find(events, ForceOff::stall, &SafetyEvent::causes);
-    ASSERT_NE(noted, events.end());
-    const double force =
-        rig.written_n(noted->frame).norm() / rig.written_n(noted->frame - 1).norm();
-    const double torque =
-        rig.written_nm(noted->frame).norm() / rig.written_nm(noted->frame - 1).norm();
-    EXPECT_LT(force, 0.85);
-    EXPECT_NEAR(torque, force, 0.02);
-}
-
 /// Causes of the events after the first one, to the run's end.
 std::vector<ForceOff> causes_of(LoopRig& rig)
 {
@@ -468,57 +450,6 @@ TEST(HapticLoop, a_release_that_has_begun_does_not_undo_the_brake_of_a_bug)
     EXPECT_EQ(rig.loop().frames_done(), kSettled + 1);
     EXPECT_EQ(rig.device().status().state, DeviceState::brake);
     EXPECT_EQ(rig.device().felt_n().norm(), 0.0);
-}
-
-TEST(HapticLoop, a_wall_that_the_device_may_have_goes_through_as_it_is)
-{
-    LoopRig rig({});
-    rig.run();
-    EXPECT_GT(rig.written_n(kSettled).norm(), 1.0);
-    for (const ForceAction action :
-         {ForceAction::refused, ForceAction::stiffness_limited, ForceAction::clamped,
-          ForceAction::change_limited, ForceAction::blind})
-    {
-        EXPECT_EQ(rig.frames_with(action), 0U) << static_cast<int>(action);
-    }
-    EXPECT_LT(rig.frames_with(ForceAction::damped), 100U); // The entry's energy only.
-}
-
-TEST(HapticLoop, a_stiffer_wall_than_the_device_may_have_is_as_stiff_as_it_may_be)
-{
-    const auto pressed_with = [](double stiffness_n_per_m)
-    {
-        LoopRigOptions options;
-        options.stiffness_n_per_m = stiffness_n_per_m;
-        return options;
-    };
-    const double limit_n_per_m = 0.9 * 2.0 * 1.0 / kPeriod_s; // The device's damping is 1 N s/m.
-    LoopRig stiff(pressed_with(3'000.0));
-    LoopRig softer(pressed_with(limit_n_per_m * (1.0 - 1e-9)));
-    stiff.run();
-    softer.run();
-    for (const std::uint64_t frame : {kSettled, kSettled + 500})
-    {
-        EXPECT_NEAR((stiff.written_n(frame) - softer.written_n(frame)).norm(), 0.0, 1e-3);
-    }
-    EXPECT_GT(stiff.frames_with(ForceAction::stiffness_limited), 1'000U);
-    EXPECT_EQ(softer.frames_with(ForceAction::stiffness_limited), 0U);
-}
-
-TEST(HapticLoop, takes_back_a_device_that_somebody_has_braked)
-{
-    LoopRig rig(when_settled(
-        [](LoopRig& running)
-        {
-            running.device().brake();
-            running.device().brake(); // The second call has no effect.
-        }));
-    rig.run();
-    const double before_n = rig.written_n(kSettled - 1).norm();
-    EXPECT_EQ(rig.written_n(kSettled).norm(), 0.0);
-    EXPECT_LE(rig.largest_step_n(kSettled, 1'900), kBackStep_n);
-    EXPECT_NEAR(rig.written_n(1'900).norm(), before_n, 0.05 * before_n);
-    EXPECT_EQ(std::ranges::count(rig.events(), ForceOff::watchdog, &SafetyEvent::causes), 1);
 }
 
 } // namespace

@@ -225,23 +225,6 @@ TEST_F(FollowedScene, comes_moves_and_goes_through_the_door)
     EXPECT_EQ(keeper->news().passed_over, 0U);
 }
 
-TEST_F(FollowedScene, feels_as_its_server_says)
-{
-    const std::uint32_t cup = show(*server, "cup", 0.0);
-    ASSERT_NO_FATAL_FAILURE(start(true, 4));
-    const std::uint32_t pot = show(*server, "pot", 1.0, 1);
-    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_comes] == 1; }));
-    const Material honey{300.0, 0.4, 0.2, 1.5, 2.5};
-    ASSERT_TRUE(server->objects().feel(cup, honey));
-    ASSERT_TRUE(step_until([&] { return keeper->news().feels == 1; }));
-    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 1; }));
-    ASSERT_TRUE(server->objects().feel(pot, honey));
-    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_feels] == 2; }));
-    server->objects().remove(pot);
-    ASSERT_TRUE(step_until([&] { return changes[SceneChangeKind::object_goes] == 1; }));
-    EXPECT_EQ(keeper->news().feels, 2U);
-}
-
 /// Values outside the ranges of --material, or with damping that leaves the device less than half
 /// of its wall.
 TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)

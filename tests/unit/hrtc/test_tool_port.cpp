@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/devices/device_force.hpp"
-#include "platform/devices/simulated/device_classes.hpp"
 #include "platform/loop/tool_port.hpp"
 #include "tests/unit/hrtc/period.hpp"
 
@@ -47,7 +46,6 @@ public:
     void write(const Wrench& wrench) noexcept override
     {
         written_n = to_vec3(wrench.force_world_n);
-        written_nm = to_vec3(wrench.torque_world_nm);
         written_gripper_n = wrench.gripper_force_n;
     }
     void brake() noexcept override {}
@@ -57,13 +55,9 @@ public:
         return {DeviceState::force, 0, 0, 0};
     }
 
-    void measure_rotation(const RotationLimits& turn = {.is_measured = true})
-    {
-        info_.limits.rotation = turn;
-    }
+    void measure_rotation() { info_.limits.rotation.is_measured = true; }
 
     Vec3 written_n{0.0, 0.0, 0.0};
-    Vec3 written_nm{0.0, 0.0, 0.0};
     double written_gripper_n{0.0};
     DevicePose hand;
     std::uint32_t buttons{0};
@@ -135,21 +129,6 @@ protected:
     ToolForce last_; ///< Last force of step().
 };
 
-TEST_F(ToolPortTest, what_the_frame_says_of_the_tool_becomes_a_cause)
-{
-    warm_up();
-    ToolOutput halted = pushed_;
-    halted.halted = true;
-    EXPECT_EQ(step(halted).causes, ForceOff::halted);
-    ToolOutput stuck = pushed_;
-    stuck.sample_fault = FrameFault::tool_stuck;
-    EXPECT_EQ(step(stuck).causes, ForceOff::stale);
-    ToolOutput bad = pushed_;
-    bad.force_n.x() = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(step(bad).causes, ForceOff::garbage);
-    EXPECT_LT(device().written_n.norm(), pushed_.force_n.norm());
-}
-
 /// Place with a rotation about z by a unit quaternion.
 DevicePose turned_place(const Vec3& position_m, double z, double w)
 {
@@ -181,32 +160,6 @@ TEST_F(ToolPortTest, a_rotation_that_is_none_makes_the_sample_invalid)
     EXPECT_TRUE(sut_->read(1).valid);
 }
 
-/// Box rotated against its proxy, on a device with torque.
-TEST_F(ToolPortTest, a_torque_goes_out_with_the_force_and_fades_with_it)
-{
-    device().measure_rotation(kDeskRotation);
-    setup_.spec.core = Box{Vec3(0.01, 0.01, 0.01)};
-    setup_.conditioner.device = device().info().limits;
-    setup_.limits.torque_max_nm = kDeskRotation.torque_max_nm;
-    restart();
-    pushed_.torque_nm = Vec3(0.0, 0.1, 0.0);
-    pushed_.proxy_rotation = to_rotation({0.0, 0.1, 0.0, 1.0});
-    warm_up();
-    EXPECT_LT((device().written_nm - pushed_.torque_nm).norm(), 1e-9);
-    EXPECT_NEAR(last_.twist_rad, 2.0 * std::atan(0.1), 1e-9);
-    EXPECT_EQ(sut_->record().sent_nm, device().written_nm);
-    ToolOutput stuck = pushed_;
-    stuck.sample_fault = FrameFault::tool_stuck;
-    static_cast<void>(step(stuck));
-    const double gain = device().written_n.norm() / pushed_.force_n.norm();
-    EXPECT_LT(gain, 1.0);
-    EXPECT_NEAR(device().written_nm.norm(), gain * pushed_.torque_nm.norm(), 1e-9);
-    ToolOutput bad = pushed_;
-    bad.torque_nm.x() = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(step(bad).causes, ForceOff::garbage);
-    EXPECT_TRUE(device().written_nm.allFinite());
-}
-
 TEST_F(ToolPortTest, a_force_of_the_programs_own_goes_out_and_fades_as_that_of_surfaces)
 {
     SaidForce own;
@@ -233,20 +186,6 @@ TEST_F(ToolPortTest, a_force_of_the_programs_own_goes_out_and_fades_as_that_of_s
     steps(stuck, 60);
     EXPECT_EQ(device().written_n, Vec3(0.0, 0.0, 0.0));
     EXPECT_EQ(device().written_gripper_n, 0.0);
-}
-
-TEST_F(ToolPortTest, a_force_of_the_programs_own_is_within_the_devices_limits)
-{
-    SaidForce own;
-    own.said.force_n = Vec3(0.0, 50.0, 0.0);
-    setup_.external_force = &own;
-    restart();
-    steps({}, 200);
-    EXPECT_NEAR(device().written_n.norm(), 8.0, 1e-9);
-    EXPECT_TRUE(has_action(last_.push.actions, ForceAction::clamped));
-    own.said.stiffness_n_per_m = 4'000.0; // The spring is twice as stiff as the device permits.
-    static_cast<void>(step(ToolOutput{}));
-    EXPECT_TRUE(has_action(last_.push.actions, ForceAction::stiffness_limited));
 }
 
 TEST_F(ToolPortTest, a_force_of_the_programs_own_that_is_no_number_is_garbage)

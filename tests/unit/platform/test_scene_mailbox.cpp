@@ -6,12 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <random>
-#include <thread>
 #include <vector>
 
 namespace tactus
@@ -654,39 +652,6 @@ TEST(SceneMailbox, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it
     }
     EXPECT_TRUE(sut.refresh(kStart).empty());
     EXPECT_TRUE(sut.try_come(SceneMailbox::kWaiting, 1, {}, pose_of(1.0), kStart));
-}
-
-/// The writer continues until enough different poses were read, so that reader and writer do
-/// interleave. Poses are so far apart that each is taken at once.
-TEST(SceneMailbox, never_mixes_two_poses_and_never_goes_back)
-{
-    constexpr int kPoses = 2'000;
-    constexpr double kApart = 1e9;
-    const std::vector<ObjectPose> placed{pose_of(1.0)};
-    SceneMailbox sut(placed, kLimit);
-    std::atomic<bool> reading{true};
-    std::thread writer(
-        [&]
-        {
-            for (double number = kApart; reading; number += kApart)
-            {
-                sut.put(0, pose_of(number), kStart);
-            }
-        });
-    int faults = 0;
-    double last = 1.0;
-    for (int seen = 0; seen < kPoses;)
-    {
-        for (const SceneChange& change : sut.refresh(kStart))
-        {
-            faults += !is_whole(change.pose) || change.pose.scale <= last ? 1 : 0;
-            last = change.pose.scale;
-            ++seen;
-        }
-    }
-    reading = false;
-    writer.join();
-    EXPECT_EQ(faults, 0);
 }
 
 } // namespace

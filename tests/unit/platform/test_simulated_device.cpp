@@ -112,32 +112,6 @@ TEST(SimulatedDevice, trails_a_moving_hand_by_its_own_drag)
     EXPECT_NEAR((*sample.velocity_world_m_per_s)[0], 0.1, 1e-6);
 }
 
-TEST(SimulatedDevice, has_the_friction_the_quantum_and_the_delay_of_its_limits)
-{
-    SimulatedDeviceOptions options;
-    options.device.friction_n = 0.5;
-    options.device.quantum_m = 1e-4;
-    options.device.delay_s = 2e-3;
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
-    const auto read_after = [&](double force_n, int periods)
-    {
-        double position_m = sut->read().position_world_m[0];
-        for (int i = 0; i < periods; ++i)
-        {
-            sut->write({{force_n, 0.0, 0.0}, {}, 0.0});
-            position_m = sut->read().position_world_m[0];
-        }
-        return position_m;
-    };
-    EXPECT_EQ(read_after(0.49, 500), 0.0); // Friction holds it.
-    const Vec3 before = Vec3(read_after(3.0, 2), 0.0, 0.0);
-    EXPECT_EQ(before.x(), 0.0); // The reading is delayed.
-    const double there_m = read_after(3.0, 500);
-    EXPECT_GT(there_m, 2.0 * kArmAndGrip_m_per_n);
-    EXPECT_NEAR(std::remainder(there_m, 1e-4), 0.0, 1e-12);
-    EXPECT_EQ(sut->info().limits.quantum_m, 1e-4);
-}
-
 TEST(SimulatedDevice, its_brake_drops_a_force_that_is_still_under_way)
 {
     SimulatedDeviceOptions options;

@@ -19,7 +19,6 @@ namespace
 {
 
 using test::UdpPeer;
-using udp::DatagramFault;
 
 udp::Socket any_socket()
 {
@@ -69,10 +68,6 @@ protected:
         sample.time_ns = ++device_ns;
         sample.valid = true;
         return sample;
-    }
-    [[nodiscard]] std::uint64_t refused(DatagramFault fault) const
-    {
-        return sut->traffic().refused.at(static_cast<std::size_t>(fault));
     }
     /// Receives until a datagram satisfies the condition.
     template <typename Wanted>
@@ -250,45 +245,6 @@ TEST_F(UdpDeviceTest, passes_on_what_a_sample_says)
     EXPECT_FALSE(second.valid);
     EXPECT_TRUE(second.deadman_held);
     EXPECT_EQ(second.position_world_m, first.position_world_m);
-}
-
-TEST_F(UdpDeviceTest, refuses_and_counts_what_is_stale_foreign_or_spoilt)
-{
-    options.times = test::patient_times();
-    attach();
-    static_cast<void>(peer.ask());
-    peer.say(sample_at(0.01));
-    const std::uint64_t sequence = peer.sequence();
-    const std::uint64_t session = peer.session();
-
-    udp::SampleDatagram again = sample_at(0.02);
-    again.address = {peer.instance(), session, sequence};
-    peer.send(udp::encode(again)); // The number of the previous one.
-    again.address = {peer.instance(), session + 1, sequence + 1};
-    peer.send(udp::encode(again)); // Number of another session.
-    const auto sound = udp::encode(sample_at(0.03));
-    std::vector<std::byte> spoilt(sound.begin(), sound.end());
-    spoilt[50] ^= std::byte{1};
-    peer.send(spoilt);
-    peer.send(std::span(spoilt).first(95));
-    peer.send(std::vector<std::byte>(1'400, std::byte{7}));
-    UdpPeer thief(controller, 12);
-    thief.describe(desk());
-    again.address = {peer.instance(), session, sequence + 1};
-    thief.send(udp::encode(again)); // All correct, but from another port.
-
-    peer.say(sample_at(0.04)); // One socket would have accepted all others before it.
-    while (refused(DatagramFault::foreign) < 2) // Two sockets need this wait.
-    {
-        std::this_thread::yield();
-    }
-    EXPECT_EQ(refused(DatagramFault::stale), 1U);
-    EXPECT_EQ(refused(DatagramFault::session), 1U);
-    EXPECT_EQ(refused(DatagramFault::checksum), 1U);
-    EXPECT_EQ(refused(DatagramFault::size), 2U);
-    EXPECT_EQ(sut->traffic().samples, 2U);
-    EXPECT_EQ(sut->traffic().sessions, 1U);
-    EXPECT_EQ(sut->read().position_world_m[0], 0.04);
 }
 
 TEST_F(UdpDeviceTest, is_gone_when_the_device_is_silent_and_idle_when_another_is_there)

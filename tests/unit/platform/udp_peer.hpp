@@ -73,8 +73,6 @@ public:
         return force;
     }
 
-    [[nodiscard]] std::uint64_t session() const noexcept { return session_; }
-    [[nodiscard]] std::uint64_t sequence() const noexcept { return sequence_; }
     [[nodiscard]] std::uint64_t instance() const noexcept { return instance_; }
     void set_session(std::uint64_t session) noexcept { session_ = session; }
     void set_sequence(std::uint64_t sequence) noexcept { sequence_ = sequence; }

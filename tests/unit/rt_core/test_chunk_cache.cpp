@@ -8,7 +8,6 @@
 
 #include <deque>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 
@@ -137,7 +136,6 @@ public:
     {
         return table_->find({chunk}) != IdTable::kAbsent;
     }
-    [[nodiscard]] std::size_t free_pages() const { return free_pages_.size(); }
     PageTable& table() { return *table_; }
     CachePool& pool() { return *pool_; }
     /// Another model of the same pieces in the same pool, with all pages but `kept` available to
@@ -202,49 +200,6 @@ using Chunks = std::set<std::uint32_t>;
 
 } // namespace
 
-TEST(ChunkCache, asks_for_the_index_page_first_and_only_once)
-{
-    CacheRig rig = one_index_page(4);
-
-    const auto first = rig.ask({sphere(25, 10)});
-
-    ASSERT_EQ(first.size(), 1U);
-    EXPECT_EQ(first[0], (ContentKey{ContentKind::index_page, 0}));
-    EXPECT_TRUE(rig.ask({sphere(25, 10)}).empty());
-}
-
-TEST(ChunkCache, asks_for_nothing_when_no_sphere_is_near)
-{
-    CacheRig rig = one_index_page(4);
-
-    EXPECT_TRUE(rig.ask({}).empty());
-    EXPECT_TRUE(rig.ask({sphere(5'000, 10)}).empty());
-}
-
-TEST(ChunkCache, asks_for_exactly_the_chunks_whose_boxes_meet_a_sphere)
-{
-    Random random(20);
-    for (int round = 0; round < 300; ++round)
-    {
-        CacheRig fresh = one_index_page(kChunks);
-        fresh.ask({sphere(25, 10)});
-        fresh.deliver_index_page(0);
-        const double x = random.between(-100.0, 1'000.0);
-        const double radius = random.between(0.0, 200.0);
-        Chunks expected;
-        for (std::uint32_t i = 0; i < kChunks; ++i)
-        {
-            const double nearest = std::clamp(x, 100.0 * i, 100.0 * i + 50.0);
-            if (std::abs(x - nearest) <= radius)
-            {
-                expected.insert(i);
-            }
-        }
-        ASSERT_EQ(fresh.ask_chunks({sphere(x, radius)}), expected) << x << " " << radius;
-        ASSERT_TRUE(fresh.ask({sphere(x, radius)}).empty()) << "all are under way";
-    }
-}
-
 TEST(ChunkCache, a_chunk_that_is_here_is_not_asked_for_again)
 {
     CacheRig rig = one_index_page(kChunks);
@@ -256,17 +211,6 @@ TEST(ChunkCache, a_chunk_that_is_here_is_not_asked_for_again)
     rig.sut->set_variant({.keeps_searches = false});
     EXPECT_TRUE(rig.ask({sphere(25, 10)}).empty());
     EXPECT_GT(rig.work.cache_hits, 0U);
-}
-
-TEST(ChunkCache, sends_no_more_requests_than_the_budget)
-{
-    CacheRig other = one_index_page(kChunks);
-    other.ask({sphere(400, 5'000)});
-    other.deliver_index_page(0);
-    other.budgets.requests = 3;
-    other.work = {};
-
-    EXPECT_EQ(other.ask_chunks({sphere(400, 5'000)}).size(), 3U);
 }
 
 TEST(ChunkCache, asks_for_no_more_chunks_than_the_transport_has_slots)
@@ -366,70 +310,6 @@ TEST(ChunkCache, present_need_takes_the_place_of_what_was_only_predicted)
     EXPECT_EQ(asked, Chunks{1});
     EXPECT_TRUE(rig.has(0));
     EXPECT_FALSE(rig.has(7));
-}
-
-TEST(ChunkCache, asks_again_for_what_was_not_answered_in_time)
-{
-    CacheRig lost = one_index_page(2);
-    lost.ask({sphere(25, 5)});
-    lost.deliver_index_page(0);
-    ASSERT_EQ(lost.ask_chunks({sphere(25, 5)}), Chunks{0});
-    const std::uint32_t asked = lost.frame - 1;
-
-    while (lost.ask_chunks({sphere(25, 5)}).empty())
-    {
-        ASSERT_LT(lost.frame, asked + 2 * kRequestTimeoutFrames);
-    }
-
-    EXPECT_GT(lost.frame - 1, asked + kRequestTimeoutFrames);
-}
-
-TEST(ChunkCache, late_arrivals_never_let_more_be_asked_for_than_there_are_slots)
-{
-    CacheRig rig = one_index_page(3);
-    rig.ask({sphere(25, 10)});
-    rig.deliver_index_page(0);
-    ASSERT_EQ(rig.ask_chunks({sphere(125, 120)}), (Chunks{0, 1, 2}));
-    // The network stalls until all three requests have expired; then two others are wanted.
-    rig.frame += kRequestTimeoutFrames + 1;
-    for (int i = 0; i < 4; ++i)
-    {
-        ASSERT_TRUE(rig.ask({}).empty());
-    }
-    ASSERT_EQ(rig.ask_chunks({sphere(575, 50)}), (Chunks{5, 6}));
-    // Two of the first three arrive after all: one slot is left for two requests.
-    rig.deliver_chunk(0);
-    rig.deliver_chunk(1);
-    rig.ask({});
-    rig.ask({});
-    rig.ask({});
-
-    const Chunks asked = rig.ask_chunks({sphere(325, 10)});
-
-    const std::size_t under_way = 2 + asked.size();
-    EXPECT_TRUE(asked.empty() || under_way <= rig.free_pages())
-        << under_way << " requests under way for " << rig.free_pages() << " free slots";
-}
-
-TEST(ChunkCache, asks_for_what_comes_into_a_sphere_however_slowly_it_moves)
-{
-    CacheRig sut = one_index_page(8);
-    sut.load({sphere(20, 10)});
-    Chunks asked;
-
-    // The path is from chunk 0 to chunk 1, each frame within a recent search.
-    for (int i = 0; i <= 800; ++i)
-    {
-        const double x = 20.0 + 0.1 * i;
-        for (const std::uint32_t chunk : sut.ask_chunks({sphere(x, 10)}))
-        {
-            asked.insert(chunk);
-            sut.deliver_chunk(chunk);
-        }
-        ASSERT_TRUE(x + 10.0 < 100.0 || asked.contains(1)) << "at " << x;
-    }
-    EXPECT_EQ(asked, Chunks{1});
-    EXPECT_GT(sut.work.skipped.times()[static_cast<std::size_t>(Skip::searches)], 400U);
 }
 
 TEST(ChunkCache, rests_for_no_longer_than_the_pages_may_go_untouched)

@@ -37,18 +37,6 @@ protected:
 
 } // namespace
 
-TEST_F(FacePoolTest, an_empty_one_finds_nothing)
-{
-    make(4);
-
-    EXPECT_EQ(sut_->used(), 0U);
-    EXPECT_EQ(sut_->capacity(), 4U);
-    EXPECT_TRUE(sut_->find({0}, 0).is_none());
-    PoolShare share = sut_->promise(0);
-    EXPECT_FALSE(take(share, kMaxModels - 1, 3).is_none());
-    EXPECT_DEATH(take(share, kMaxModels, 3), "");
-}
-
 TEST_F(FacePoolTest, a_full_one_has_no_room_until_a_face_goes_back)
 {
     make(1);
@@ -63,26 +51,6 @@ TEST_F(FacePoolTest, a_full_one_has_no_room_until_a_face_goes_back)
     EXPECT_TRUE(sut_->find({7}, 0).is_none());
     EXPECT_DEATH(sut_->give_back(share, 0, prim), "");
     EXPECT_EQ(take(share, 0, 8), prim);
-}
-
-TEST_F(FacePoolTest, one_owner_cant_take_what_is_kept_for_another)
-{
-    make(8);
-    PoolShare greedy = sut_->promise(1);
-    PoolShare modest = sut_->promise(3);
-    for (std::uint32_t face = 0; sut_->left_for(greedy) > 0; ++face)
-    {
-        take(greedy, 0, face);
-    }
-
-    EXPECT_EQ(greedy.used, 5U);
-    EXPECT_DEATH(take(greedy, 0, 100), "");
-    for (std::uint32_t face = 0; face < 3; ++face)
-    {
-        EXPECT_FALSE(take(modest, 1, face).is_none());
-    }
-    EXPECT_EQ(sut_->left_for(modest), 0U);
-    EXPECT_EQ(sut_->used(), 8U);
 }
 
 TEST_F(FacePoolTest, random_changes_of_several_owners_match_a_map)

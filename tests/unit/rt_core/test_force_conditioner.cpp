@@ -214,27 +214,6 @@ TEST(ForceConditioner, gives_no_force_for_what_is_no_number_and_recovers)
     EXPECT_EQ(condition(sut, pulling).force_n, Vec3(0, 0, 0));
 }
 
-TEST(ForceConditioner, clamps_to_the_device_and_says_so)
-{
-    ConditionerSetup setup = plain_setup();
-    ForceConditioner sut(setup);
-    const SpringForce out = condition(sut, force(25.0));
-    EXPECT_NEAR(out.force_n.x(), 10.0, kRounding);
-    EXPECT_EQ(out.actions, ForceAction::clamped);
-}
-
-TEST(ForceConditioner, scales_a_wall_down_to_the_stiffness_that_the_rule_allows)
-{
-    ForceConditioner sut(plain_setup());
-    EXPECT_DOUBLE_EQ(sut.stiffness_limit_n_per_m(), 3'600.0);
-    CommandedForce commanded = force(0.72);
-    commanded.stiffness_n_per_m = 7'200.0;
-    const SpringForce out = condition(sut, commanded);
-    EXPECT_NEAR(out.force_n.x(), 0.36, kRounding);
-    EXPECT_EQ(out.actions, ForceAction::stiffness_limited);
-    EXPECT_DOUBLE_EQ(out.stiffness_n_per_m, 3'600.0);
-}
-
 TEST(ForceConditioner, counts_the_work_of_what_went_out_in_its_place)
 {
     ForceConditioner sut(plain_setup());
@@ -386,21 +365,6 @@ TEST(ForceConditioner, damps_what_came_from_nowhere_and_never_pulls)
         damped += out.damping_n_s_per_m > 0.0 ? 1U : 0U;
     }
     EXPECT_GT(damped, 10U);
-}
-
-TEST(ForceConditioner, takes_the_same_bits_to_the_same_bits)
-{
-    ForceConditioner one(plain_setup());
-    ForceConditioner other(plain_setup());
-    Random random(5);
-    for (int i = 0; i < 1'000; ++i)
-    {
-        CommandedForce commanded;
-        commanded.force_n = random.in_cube(12.0);
-        commanded.position_m = random.in_cube(1e-3);
-        commanded.stiffness_n_per_m = random.between(0.0, 6'000.0);
-        EXPECT_EQ(condition(one, commanded).force_n, condition(other, commanded).force_n);
-    }
 }
 
 namespace

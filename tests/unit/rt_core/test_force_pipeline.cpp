@@ -3,7 +3,6 @@
 #include "platform/devices/simulated/device_classes.hpp"
 #include "rt_core/force/force_pipeline.hpp"
 #include "rt_core/limits.hpp"
-#include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rotation.hpp"
 #include "tests/shared/period.hpp"
 #include "tests/shared/random.hpp"
@@ -12,8 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -346,112 +343,6 @@ TEST(ForcePipeline, lets_an_honest_touch_through_as_it_is)
     }
 }
 
-/// 12 to 25 mm of spring at once, in a resting hand.
-TEST(ForcePipeline, a_strike_rises_from_zero_and_is_told)
-{
-    for (const auto& [device, stiffness, most_n] :
-         {std::tuple(kOmegaClass, 500.0, 0.5), std::tuple(kTouchClass, 400.0, 0.25)})
-    {
-        PipedTool tool(piped(device));
-        tool.output.in_contact = false;
-        tool.steps(200);
-        tool.output.in_contact = true;
-        tool.output.stiffness_n_per_m = stiffness;
-        tool.output.object_way_m = 0.025;
-        tool.output.proxy_m = Vec3(0.0, 0.0, 0.025);
-        tool.output.force_n = Vec3(0.0, 0.0, 0.025 * stiffness);
-        double last_n = 0.0;
-        double growth_n = 0.0;
-        bool is_told = false;
-        for (int i = 0; i < 200; ++i)
-        {
-            const ToolForce& force = tool.step();
-            tool.output.object_way_m = 0.0;
-            growth_n = std::max(growth_n, force.push.force_n.norm() - last_n);
-            last_n = force.push.force_n.norm();
-            is_told = is_told || has_cause(force.causes, ForceOff::growth);
-        }
-        std::printf("strike, device of %.1f N: %.3f N a period, %.2f N after 200\n",
-                    device.force_max_n, growth_n, last_n);
-        EXPECT_LE(growth_n, most_n);
-        EXPECT_GT(growth_n, 0.0);
-        EXPECT_TRUE(is_told);
-    }
-}
-
-/// Another material every 60 ms: its stiffness, or a damping that removes the wall.
-TEST(ForcePipeline, materials_that_change_make_no_step_of_the_force)
-{
-    for (const bool is_damping : {true, false})
-    {
-        PipedTool tool(piped(kOmegaClass));
-        tool.output.stiffness_n_per_m = 3'000.0;
-        tool.press(0.0);
-        tool.steps(200);
-        double fall_n = 0.0;
-        double growth_n = 0.0;
-        double least_n = kInfinity;
-        double most_n = 0.0;
-        double stiffness = 3'000.0;
-        for (int i = 0; i < 1'200; ++i)
-        {
-            const bool is_other = i / 60 % 2 == 1;
-            tool.context.surface_damping_n_s_per_m = is_damping && is_other ? 20.0 : 0.0;
-            // The change is that of MaterialBlend.
-            stiffness += std::clamp((is_other ? 50.0 : 3'000.0) - stiffness, -59.0, 59.0);
-            tool.output.stiffness_n_per_m = is_damping ? 3'000.0 : stiffness;
-            tool.press(0.002);
-            const double before_n = tool.sent_n().norm();
-            const double now_n = tool.step().push.force_n.norm();
-            if (i > 100)
-            {
-                fall_n = std::max(fall_n, before_n - now_n);
-                growth_n = std::max(growth_n, now_n - before_n);
-                least_n = std::min(least_n, now_n);
-                most_n = std::max(most_n, now_n);
-            }
-        }
-        std::printf(
-            "%s every 60 ms: falls by %.3f N and grows by %.3f N a period, %.2f to %.2f N\n",
-            is_damping ? "damping 0, 20 N s/m" : "stiffness 50, 3,000 N/m", fall_n, growth_n,
-            least_n, most_n);
-        EXPECT_LE(fall_n, 0.5);
-        EXPECT_LE(growth_n, 0.5);
-        EXPECT_GT(most_n - least_n, 2.0);
-    }
-}
-
-/// The hand moves with an object at 0.45 m/s, which constantly presses and releases slightly.
-TEST(ForcePipeline, an_object_that_carries_a_hand_makes_no_step_of_the_force)
-{
-    for (const bool is_told : {true, false})
-    {
-        PipedTool tool(piped(kOmegaClass));
-        tool.steps(200);
-        double growth_n = 0.0;
-        std::uint32_t damped = 0;
-        for (int i = 0; i < 500; ++i)
-        {
-            const double way_m = 0.45 * kPeriod_s;
-            const double depth_m = 0.004 + 0.0002 * std::sin(0.7 * i);
-            tool.output.proxy_m = Vec3(0.0, 0.0, way_m * i);
-            tool.state.position_m = tool.output.proxy_m - Vec3(0.0, 0.0, depth_m);
-            tool.output.force_n = Vec3(0.0, 0.0, 500.0 * depth_m);
-            tool.output.object_way_m = is_told ? way_m : 0.0;
-            tool.output.carried_m = is_told ? Vec3(0.0, 0.0, way_m) : Vec3(0.0, 0.0, 0.0);
-            const double before_n = tool.sent_n().norm();
-            const ToolForce& force = tool.step();
-            growth_n = std::max(growth_n, i > 100 ? force.push.force_n.norm() - before_n : 0.0);
-            damped += i > 100 && has_action(force.push.actions, ForceAction::damped) ? 1U : 0U;
-        }
-        std::printf("an object of 0.45 m/s%s: %.3f N a period, damped in %u of 400\n",
-                    is_told ? "" : " that the frame says nothing of", growth_n, damped);
-        // The hand's whole displacement with its swing counts if the object's is unknown.
-        EXPECT_LE(growth_n, is_told ? 0.35 : 500.0 * 0.6e-3 + 0.12);
-        EXPECT_EQ(damped > 200, !is_told);
-    }
-}
-
 TEST(ForcePipeline, a_force_that_the_last_stage_holds_back_fades_from_what_went_out)
 {
     for (const bool has_frame : {true, false})
@@ -473,32 +364,6 @@ TEST(ForcePipeline, a_force_that_the_last_stage_holds_back_fades_from_what_went_
             EXPECT_LT((force.push.force_n - gain * before_n).norm(), 1e-9) << i;
         }
     }
-}
-
-/// The damping of a fade grows no faster than the law permits, and does not accumulate.
-TEST(ForcePipeline, a_fast_hand_fades_its_force_and_gets_none_for_its_speed)
-{
-    PipedTool tool(piped(kOmegaClass));
-    tool.press(0.0);
-    tool.steps(200);
-    for (int i = 1; i <= 100; ++i)
-    {
-        tool.press(1e-4 * std::min(i, 60));
-        tool.steps(1);
-    }
-    const double before_n = tool.sent_n().norm();
-    ASSERT_GT(before_n, 2.0);
-    tool.device.velocity_m_per_s = Vec3(0.0, 0.0, -10.0);
-    for (int i = 1; i <= 60; ++i)
-    {
-        const ToolForce& force = tool.step();
-        EXPECT_TRUE(has_cause(force.causes, ForceOff::velocity));
-        const double gain = std::max(0.0, 1.0 - i * kPeriod_s / kFadeTime_s);
-        const double damping_n =
-            std::min(4.0 * gain * (1.0 - gain) * 0.5 * 1.7 * 10.0, kDampingForceShare * 12.0);
-        EXPECT_LE(force.push.force_n.norm(), gain * before_n + damping_n + 1e-9) << i;
-    }
-    EXPECT_EQ(tool.sent_n(), Vec3(0.0, 0.0, 0.0));
 }
 
 TEST(ForcePipeline, tells_each_change_of_state_and_causes_once)

@@ -50,17 +50,6 @@ void expect_same(const IdTable& sut,
 
 } // namespace
 
-TEST_F(IdTableTest, an_empty_table_finds_nothing)
-{
-    const IdTable sut = make(4);
-
-    EXPECT_EQ(sut.size(), 0U);
-    EXPECT_EQ(sut.capacity(), 4U);
-    EXPECT_EQ(sut.find(0), IdTable::kAbsent);
-    EXPECT_EQ(sut.find(0xFFFF'FFFEU), IdTable::kAbsent);
-    EXPECT_EQ(sut.find(IdTable::kAbsent), IdTable::kAbsent);
-}
-
 TEST_F(IdTableTest, random_operations_match_a_map)
 {
     Random random(1);

@@ -14,7 +14,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -194,13 +196,6 @@ Asked ask(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place
 {
     return ask_for(kAllMeetingFaces, tool, object, place, reach, contact, memory, budget, certified,
                    ends);
-}
-
-Asked ask_without_pairs(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place,
-                        double reach, double contact, MeshMemory& memory)
-{
-    return ask_for(contact >= 0.0 ? kEnoughMeetingFaces : 1, tool, object, place, reach, contact,
-                   memory);
 }
 
 /// Query of up to `enough` meeting pairs.
@@ -561,111 +556,150 @@ TEST(MeshPlacement, has_an_inverse)
     }
 }
 
-TEST(MeshQuery, finds_what_measuring_all_pairs_finds)
+TEST(MeshQuery, finds_what_measuring_all_pairs_finds_with_a_tolerance_and_without)
 {
     Random random(73);
-    int exact = 0;
-    int separated = 0;
     int met = 0;
-    for (int round = 0; round < 120; ++round)
+    int touching = 0;
+    std::map<AnswerKind, int> exactly;
+    std::map<AnswerKind, int> tolerantly;
+    for (int round = 0; round < 240; ++round)
     {
-        const auto [tool, object] = Meshes::of_any_size(random, round);
-        const auto tool_faces = tool.present();
-        const auto faces = object.present();
+        const int half = round / 2;
+        const bool is_tolerant = round % 2 == 1;
+        const auto [tool, object] = is_tolerant
+                                        ? Meshes(random, half % 4 == 0, half % 4 == 1, false)
+                                        : Meshes(random, half % 3 != 0, half % 4 != 0, false);
+        const std::uint32_t least = half % 3 == 0 ? 0 : 45; // Most faces are within the tolerance.
+        const auto code = [&]
+        { return static_cast<ErrorCode>(is_tolerant ? least + random.below(61 - least) : 0); };
+        Tolerances tolerances;
+        tolerances.tool = code();
+        tolerances.object = code();
         MeshMemory memory;
-        for (int query = 0; query < 10; ++query)
+        for (int query = 0; query < 8; ++query)
         {
-            const MeshPlacement place = lifted_placement(random, 1.5);
-            const double reach = random.between(0.0, 0.2);
-            const double contact = random.one_in(3) ? -1.0 : reach * random.between(0.0, 1.0);
-            const AllPairs truth(tool_faces, faces, place, contact);
+            SCOPED_TRACE(std::to_string(round) + " " + std::to_string(query));
+            const MeshPlacement place = lifted_placement(random, 1.4);
+            const double reach = random.between(0.0, is_tolerant ? 0.5 : 0.2);
+            const double contact = random.one_in(4) ? -1.0 : reach * random.between(0.0, 1.0);
+            const AllPairs truth(tool.present(), object.present(), place, contact, tolerances);
+            const double certified =
+                is_tolerant && random.one_in(2)
+                    ? std::max(truth.coarse_lower, 0.0) * random.between(0.0, 1.0)
+                    : 0.0;
 
-            const Asked asked = ask(tool, object, place, reach, contact, memory);
+            const Asked asked = ask_for(kAllMeetingFaces, tool, object, place, reach, contact,
+                                        memory, kAmple, certified, nullptr, tolerances);
 
             const DistanceAnswer& answer = asked.answer;
-            ASSERT_LE(answer.lower_m, truth.lower + 1e-14) << round << " " << query;
-            ASSERT_GE(answer.upper_m, truth.lower) << round << " " << query;
+            ++(is_tolerant ? tolerantly : exactly)[answer.kind];
+            ASSERT_LE(answer.lower_m, truth.lower + 1e-14);
             ASSERT_LE(answer.lower_m, answer.upper_m);
+            ASSERT_GE(answer.upper_m, truth.lower);
             // Meetings of exact faces are found, independent of all others.
-            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round << " " << query;
+            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting);
             ASSERT_TRUE(std::is_sorted(asked.report.meeting.begin(), asked.report.meeting.end()));
-            ASSERT_EQ(asked.report.is_complete, truth.coarse_lower > 0.0);
-            ASSERT_EQ(asked.report.intersection, truth.intersection());
+            ASSERT_EQ(asked.report.intersection == Intersection::proven, !truth.meeting.empty());
             met += truth.meeting.empty() ? 0 : 1;
-            exact += answer.kind == AnswerKind::exact ? 1 : 0;
-            separated += answer.kind == AnswerKind::separated ? 1 : 0;
-            if (answer.kind == AnswerKind::exact)
+            const double apart = (answer.nearest_point_m - answer.tool_point_m).norm();
+            if (!is_tolerant)
             {
-                const double apart = (answer.nearest_point_m - answer.tool_point_m).norm();
-                ASSERT_LE(apart, answer.upper_m + 1e-13);
-                ASSERT_GE(apart, answer.lower_m - 1e-13);
-                ASSERT_NEAR(truth.upper, answer.upper_m, 1e-13);
+                ASSERT_EQ(asked.report.is_complete, truth.coarse_lower > 0.0);
+                ASSERT_EQ(asked.report.intersection, truth.intersection());
+                if (answer.kind == AnswerKind::exact)
+                {
+                    ASSERT_LE(apart, answer.upper_m + 1e-13);
+                    ASSERT_GE(apart, answer.lower_m - 1e-13);
+                    ASSERT_NEAR(truth.upper, answer.upper_m, 1e-13);
+                }
+            }
+            else
+            {
+                ASSERT_GE(answer.upper_m, std::min(truth.upper, truth.corners) - 1e-14);
+                ASSERT_TRUE(asked.report.intersection != Intersection::none ||
+                            truth.is_all_known());
+            }
+            if (answer.kind == AnswerKind::within_tolerance)
+            {
+                ASSERT_GT(answer.tolerated_m, 0.0);
+                ASSERT_FALSE(answer.nearest_face.is_none());
+                ASSERT_NEAR(apart, truth.surface, 1e-13);
+                ASSERT_GE(answer.lower_m, truth.surface - answer.tolerated_m - 1e-13);
             }
             if (contact >= 0.0 && truth.in_contact.size() <= kMaxContacts)
             {
                 std::set<MeetingFaces> found;
-                for (const Contact& touching : asked.contacts.contacts)
+                for (const Contact& contact_found : asked.contacts.contacts)
                 {
-                    found.insert({touching.tool_face, touching.face});
+                    found.insert({contact_found.tool_face, contact_found.face});
                 }
-                ASSERT_EQ(found, truth.in_contact) << round << " " << query;
-                ASSERT_EQ(asked.contacts.is_complete, truth.coarse_lower > contact);
+                ASSERT_EQ(found, truth.in_contact);
+                ASSERT_TRUE(!asked.contacts.is_complete || truth.coarse_lower > contact);
+                ASSERT_TRUE(is_tolerant || asked.contacts.is_complete ||
+                            truth.coarse_lower <= contact);
+                touching += found.empty() ? 0 : 1;
             }
         }
     }
-    EXPECT_GT(exact, 60);
-    EXPECT_GT(separated, 100);
-    EXPECT_GT(met, 60);
+    EXPECT_GT(exactly[AnswerKind::exact], 60);
+    EXPECT_GT(exactly[AnswerKind::separated], 100);
+    EXPECT_GT(tolerantly[AnswerKind::within_tolerance], 30);
+    EXPECT_GT(tolerantly[AnswerKind::bounded], 25);
+    EXPECT_GT(met, 100);
+    EXPECT_GT(touching, 50);
 }
 
-TEST(MeshQuery, that_wants_no_pairs_ends_with_the_first_and_is_else_the_same)
+/// Contacts of a tool that wants no pairs need only one that meets.
+TEST(MeshQuery, that_wants_one_pair_ends_with_it_and_is_else_the_same)
 {
     Random random(89);
     int met = 0;
     int apart = 0;
-    for (int round = 0; round < 80; ++round)
+    for (int round = 0; round < 160; ++round)
     {
         const Meshes meshes(random, round % 3 != 0, round % 3 != 1);
         const MeshPlacement place = lifted_placement(random, 1.0);
         const double reach = random.between(0.0, 0.1);
+        const double contact = round % 2 == 0 ? -1.0 : reach;
         const AllPairs truth(meshes.tool.present(), meshes.object.present(), place, reach);
         MeshMemory memory{{random.below(10), random.below(10)}};
         MeshMemory same = memory;
-        const Asked all = ask(meshes.tool, meshes.object, place, reach, -1.0, memory);
+        const Asked all = ask(meshes.tool, meshes.object, place, reach, contact, memory);
         for (int again = 0; again < 2; ++again)
         {
-            const Asked sut =
-                ask_without_pairs(meshes.tool, meshes.object, place, reach, -1.0, same);
+            const Asked sut = ask_for(1, meshes.tool, meshes.object, place, reach, contact, same);
 
             ASSERT_EQ(sut.report.intersection, truth.intersection()) << round;
+            ASSERT_EQ(sut.report.meeting.size(), truth.meeting.empty() ? 0U : 1U) << round;
             if (truth.meeting.empty())
             {
                 ++apart;
                 // Bounds beyond the reach depend on the memory.
-                ASSERT_TRUE(again == 1 || sut.answer.lower_m == all.answer.lower_m);
-                ASSERT_TRUE(again == 1 || sut.answer.upper_m == all.answer.upper_m);
+                const bool varies = again == 1 || contact >= 0.0;
+                ASSERT_TRUE(varies || sut.answer.lower_m == all.answer.lower_m);
+                ASSERT_TRUE(varies || sut.answer.upper_m == all.answer.upper_m);
                 ASSERT_EQ(sut.answer.kind, all.answer.kind);
                 ASSERT_EQ(sut.report.is_complete, all.report.is_complete);
+                ASSERT_TRUE(truth.intersection() != Intersection::none ||
+                            same_contacts(sut.contacts, all.contacts))
+                    << round;
                 continue;
             }
-            ASSERT_EQ(sut.answer.lower_m, 0.0);
-            ASSERT_EQ(sut.answer.upper_m, 0.0);
             ++met;
             ASSERT_EQ(sut.answer.kind, AnswerKind::exact);
-            ASSERT_EQ(sut.report.meeting.size(), 1U);
+            ASSERT_EQ(sut.answer.lower_m, 0.0);
+            ASSERT_EQ(sut.answer.upper_m, 0.0);
             ASSERT_TRUE(truth.meeting.contains(sut.report.meeting[0]));
             ASSERT_EQ(sut.report.nearest_tool_face, sut.report.meeting[0].tool_face);
             ASSERT_EQ(sut.answer.nearest_face, sut.report.meeting[0].face);
             ASSERT_FALSE(sut.report.is_complete);
-            ASSERT_TRUE(again == 0 || sut.budget.nodes_visited == 1);
+            ASSERT_TRUE(contact < 0.0 || !sut.contacts.is_complete);
+            ASSERT_TRUE(again == 0 || contact >= 0.0 || sut.budget.nodes_visited == 1);
         }
-        // Contacts need them.
-        const Asked touching =
-            ask_without_pairs(meshes.tool, meshes.object, place, reach, reach, same);
-        ASSERT_EQ(as_set(touching.report.meeting), truth.meeting);
     }
-    EXPECT_GT(met, 40);
-    EXPECT_GT(apart, 40);
+    EXPECT_GT(met, 80);
+    EXPECT_GT(apart, 80);
 }
 
 /// Moves the coarse faces of a rig away from all others.
@@ -793,31 +827,6 @@ TEST(MeetingFaces, end_with_the_first_and_say_so)
         }
     }
     EXPECT_GT(met, 50);
-}
-
-TEST(MeetingFaces, a_spent_budget_proves_nothing)
-{
-    Random random(79);
-    int open = 0;
-    for (int round = 0; round < 60; ++round)
-    {
-        const auto [tool, object] = Meshes(random);
-        const MeshPlacement place = random_placement(random);
-        const AllPairs truth(tool.present(), object.present(), place, 0.0);
-        for (std::uint32_t share = 0; share < 200; share = 2 * share + 1)
-        {
-            MeshMemory memory{{random.below(10), random.below(10)}};
-            const Asked asked = ask_meeting(tool, object, place, 1'000'000, memory,
-                                            {share, random.below(10 * share + 1)});
-            const auto found = as_set(asked.report.meeting);
-            ASSERT_TRUE(std::includes(truth.meeting.begin(), truth.meeting.end(), found.begin(),
-                                      found.end()));
-            ASSERT_TRUE(!asked.report.is_complete || found == truth.meeting);
-            ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.meeting.empty());
-            open += asked.report.intersection == Intersection::open ? 1 : 0;
-        }
-    }
-    EXPECT_GT(open, 50);
 }
 
 TEST(NearestFaces, are_those_of_all_pairs_however_far_and_whatever_is_remembered)
@@ -1012,6 +1021,7 @@ TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
 {
     Random random(74);
     int spent = 0;
+    int open = 0;
     for (int round = 0; round < 40; ++round)
     {
         const auto [tool, object] = Meshes(random);
@@ -1020,19 +1030,27 @@ TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
         for (std::uint32_t share = 1; share < 3'000; share *= 3)
         {
             MeshMemory memory{{random.below(10), random.below(10)}};
-            const Asked asked =
-                ask(tool, object, place, 0.05, 0.05, memory, {share, random.below(10 * share)});
-            spent += asked.budget.is_spent ? 1 : 0;
-            ASSERT_LE(asked.answer.lower_m, truth.lower + 1e-14);
-            ASSERT_GE(asked.answer.upper_m, truth.lower);
-            const auto found = as_set(asked.report.meeting);
-            ASSERT_TRUE(std::includes(truth.meeting.begin(), truth.meeting.end(), found.begin(),
-                                      found.end()));
-            ASSERT_TRUE(!asked.report.is_complete || found == truth.meeting);
-            ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.meeting.empty());
+            MeshMemory same = memory;
+            const WalkBudget budget{share, random.below(10 * share)};
+            const Asked whole = ask(tool, object, place, 0.05, 0.05, memory, budget);
+            ASSERT_LE(whole.answer.lower_m, truth.lower + 1e-14);
+            ASSERT_GE(whole.answer.upper_m, truth.lower);
+            const Asked meeting = ask_meeting(tool, object, place, 1'000'000, same, budget);
+            for (const Asked* asked : {&whole, &meeting})
+            {
+                const MeshReport& report = asked->report;
+                const auto found = as_set(report.meeting);
+                ASSERT_TRUE(std::includes(truth.meeting.begin(), truth.meeting.end(), found.begin(),
+                                          found.end()));
+                ASSERT_TRUE(!report.is_complete || found == truth.meeting);
+                ASSERT_TRUE(report.intersection != Intersection::none || truth.meeting.empty());
+                spent += asked->budget.is_spent ? 1 : 0;
+                open += report.intersection == Intersection::open ? 1 : 0;
+            }
         }
     }
-    EXPECT_GT(spent, 50);
+    EXPECT_GT(spent, 100);
+    EXPECT_GT(open, 50);
 }
 
 TEST(MeshQuery, keeps_the_lowest_of_too_many_meeting_faces_and_contacts)
@@ -1156,7 +1174,8 @@ TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_wants_contacts)
     MeshMemory memory;
     for (int again = 0; again < 2; ++again)
     {
-        const Asked asked = ask_without_pairs(tool, object, MeshPlacement{}, 0.01, 0.01, memory);
+        const Asked asked =
+            ask_for(kEnoughMeetingFaces, tool, object, MeshPlacement{}, 0.01, 0.01, memory);
 
         EXPECT_EQ(asked.report.meeting.size(), kEnoughMeetingFaces);
         EXPECT_TRUE(asked.report.is_truncated);
@@ -1168,45 +1187,6 @@ TEST(MeshQuery, ends_where_enough_meets_for_a_tool_that_wants_contacts)
         EXPECT_FALSE(asked.contacts.is_complete);
         EXPECT_TRUE(memory.exceeds_capacity);
     }
-}
-
-TEST(MeshQuery, ends_with_one_pair_that_meets_where_contacts_would_tell_nothing)
-{
-    Random random(88);
-    std::uint32_t met = 0;
-    std::uint32_t apart = 0;
-    for (int round = 0; round < 80; ++round)
-    {
-        const Meshes meshes(random, round % 3 != 0, round % 3 != 1);
-        const MeshPlacement place = lifted_placement(random, 1.0);
-        const double reach = random.between(0.0, 0.1);
-        const AllPairs truth(meshes.tool.present(), meshes.object.present(), place, reach);
-        MeshMemory all_memory;
-        const Asked all = ask(meshes.tool, meshes.object, place, reach, reach, all_memory);
-        MeshMemory memory;
-        for (int again = 0; again < 2; ++again)
-        {
-            const Asked sut = ask_for(1, meshes.tool, meshes.object, place, reach, reach, memory);
-
-            ASSERT_EQ(sut.report.intersection, truth.intersection()) << round;
-            ASSERT_EQ(sut.report.meeting.size(), truth.meeting.empty() ? 0U : 1U) << round;
-            if (!truth.meeting.empty())
-            {
-                ASSERT_TRUE(truth.meeting.contains(sut.report.meeting[0]));
-                ASSERT_EQ(sut.answer.kind, AnswerKind::exact);
-                ASSERT_EQ(sut.answer.upper_m, 0.0);
-                ASSERT_FALSE(sut.contacts.is_complete);
-                ++met;
-            }
-            else if (truth.intersection() == Intersection::none)
-            {
-                ASSERT_TRUE(same_contacts(sut.contacts, all.contacts)) << round;
-                ++apart;
-            }
-        }
-    }
-    EXPECT_GT(met, 40U);
-    EXPECT_GT(apart, 10U);
 }
 
 TEST(MeshQuery, asks_for_less_of_a_far_distance_after_it_was_cut_and_for_more_again)
@@ -1309,68 +1289,6 @@ TEST(MeshQuery, looks_at_no_coarse_face_where_more_is_certified_than_it_asks_for
         spared += sut.budget.triangles_tested < free.budget.triangles_tested ? 1U : 0U;
     }
     EXPECT_GT(spared, 5U);
-}
-
-TEST(MeshQuery, with_a_tolerance_finds_what_measuring_all_pairs_finds)
-{
-    Random random(94);
-    int tolerated = 0;
-    int bounded = 0;
-    int touching = 0;
-    for (int round = 0; round < 120; ++round)
-    {
-        const auto [tool, object] = Meshes(random, round % 4 == 0, round % 4 == 1, false);
-        const std::uint32_t least = round % 3 == 0 ? 0 : 45; // Most faces are within the tolerance.
-        const auto code = [&] { return static_cast<ErrorCode>(least + random.below(61 - least)); };
-        const Tolerances tolerances{code(), code()};
-        MeshMemory memory;
-        for (int query = 0; query < 6; ++query)
-        {
-            const MeshPlacement place = lifted_placement(random, 1.2);
-            const double reach = random.between(0.0, 0.5);
-            const double contact = random.one_in(4) ? -1.0 : reach * random.between(0.0, 1.0);
-            const AllPairs truth(tool.present(), object.present(), place, contact, tolerances);
-            const double certified =
-                random.one_in(2) ? std::max(truth.coarse_lower, 0.0) * random.between(0.0, 1.0)
-                                 : 0.0;
-
-            const Asked asked = ask_for(kAllMeetingFaces, tool, object, place, reach, contact,
-                                        memory, kAmple, certified, nullptr, tolerances);
-
-            const DistanceAnswer& answer = asked.answer;
-            ASSERT_LE(answer.lower_m, truth.lower + 1e-14) << round << " " << query;
-            ASSERT_LE(answer.lower_m, answer.upper_m);
-            ASSERT_GE(answer.upper_m, truth.lower) << round << " " << query;
-            ASSERT_GE(answer.upper_m, std::min(truth.upper, truth.corners) - 1e-14);
-            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round << " " << query;
-            ASSERT_TRUE(asked.report.intersection != Intersection::none || truth.is_all_known());
-            ASSERT_EQ(asked.report.intersection == Intersection::proven, !truth.meeting.empty());
-            if (answer.kind == AnswerKind::within_tolerance)
-            {
-                ++tolerated;
-                ASSERT_GT(answer.tolerated_m, 0.0);
-                ASSERT_FALSE(answer.nearest_face.is_none());
-                const double apart = (answer.nearest_point_m - answer.tool_point_m).norm();
-                ASSERT_NEAR(apart, truth.surface, 1e-13) << round << " " << query;
-                ASSERT_GE(answer.lower_m, truth.surface - answer.tolerated_m - 1e-13);
-            }
-            bounded += answer.kind == AnswerKind::bounded ? 1 : 0;
-            if (contact >= 0.0 && truth.in_contact.size() <= kMaxContacts)
-            {
-                std::set<MeetingFaces> found;
-                for (const Contact& contact_found : asked.contacts.contacts)
-                {
-                    found.insert({contact_found.tool_face, contact_found.face});
-                }
-                ASSERT_EQ(found, truth.in_contact) << round << " " << query;
-                ASSERT_TRUE(!asked.contacts.is_complete || truth.coarse_lower > contact);
-                touching += found.empty() ? 0 : 1;
-            }
-        }
-    }
-    EXPECT_GT(tolerated, 30);
-    EXPECT_GT(bounded, 25);
-    EXPECT_GT(touching, 30);
 }
 
 /// Copy of a rig whose faces are all exact.

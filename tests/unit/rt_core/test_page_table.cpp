@@ -31,17 +31,6 @@ protected:
 
 } // namespace
 
-TEST_F(PageTableTest, an_empty_table_has_nothing)
-{
-    EXPECT_EQ(sut_.used(), 0U);
-    EXPECT_EQ(sut_.capacity(), kPages);
-    EXPECT_EQ(sut_.find({0}), IdTable::kAbsent);
-    EXPECT_EQ(sut_.find_linked({5}), nullptr);
-    EXPECT_FALSE(sut_.is_refined({5}));
-    EXPECT_FALSE(sut_.is_held({5}));
-    EXPECT_TRUE(sut_.meta(0).chunk.is_none());
-}
-
 TEST_F(PageTableTest, an_adopted_page_is_found_until_it_is_evicted)
 {
     sut_.adopt({7}, 2, 99);

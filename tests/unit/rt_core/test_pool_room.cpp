@@ -6,21 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <numeric>
 
 namespace tactus::test
 {
-
-TEST(PoolRoom, an_empty_pool_has_nothing_for_anybody)
-{
-    PoolRoom sut(0);
-    PoolShare share = sut.promise(3);
-
-    EXPECT_EQ(share.promised, 0U);
-    EXPECT_EQ(sut.left_for(share), 0U);
-    EXPECT_DEATH(sut.take(share), "");
-    EXPECT_DEATH(sut.give_back(share), "");
-}
 
 TEST(PoolRoom, an_owner_that_is_alone_has_all_of_it_whatever_is_promised)
 {
@@ -39,34 +27,6 @@ TEST(PoolRoom, an_owner_that_is_alone_has_all_of_it_whatever_is_promised)
         sut.give_back(share);
         EXPECT_EQ(sut.left_for(share), 1U);
     }
-}
-
-TEST(PoolRoom, one_owner_cant_take_what_is_kept_for_another)
-{
-    PoolRoom sut(10);
-    PoolShare greedy = sut.promise(2);
-    PoolShare modest = sut.promise(3);
-    while (sut.left_for(greedy) > 0)
-    {
-        sut.take(greedy);
-    }
-
-    EXPECT_EQ(greedy.used, 7U);
-    EXPECT_EQ(sut.left_for(modest), 3U);
-    for (int i = 0; i < 3; ++i)
-    {
-        sut.take(modest);
-    }
-    EXPECT_EQ(sut.left_for(modest), 0U);
-    EXPECT_EQ(sut.left_for(greedy), 0U);
-    // Memory returned by the modest one is reserved for it again; that of the greedy one is for
-    // both.
-    sut.give_back(modest);
-    EXPECT_EQ(sut.left_for(greedy), 0U);
-    EXPECT_EQ(sut.left_for(modest), 1U);
-    sut.give_back(greedy);
-    EXPECT_EQ(sut.left_for(greedy), 1U);
-    EXPECT_EQ(sut.left_for(modest), 2U);
 }
 
 TEST(PoolRoom, what_cant_be_refused_is_missing_for_everybody_until_as_much_has_come_back)

@@ -56,53 +56,6 @@ TEST_F(RequestListTest, looks_at_every_request_in_time_however_many_slots_there_
     EXPECT_EQ(sut.under_way(), 0U);
 }
 
-TEST_F(RequestListTest, has_credit_for_as_many_pieces_as_there_are_slots)
-{
-    for (const std::uint32_t slots : {1U, 2U, 5U})
-    {
-        RequestList sut = make(slots);
-        for (std::uint32_t number = 0; number < slots; ++number)
-        {
-            EXPECT_TRUE(sut.has_credit());
-            EXPECT_FALSE(sut.is_under_way(number));
-            sut.ask(number, 0);
-            EXPECT_TRUE(sut.is_under_way(number));
-        }
-        EXPECT_FALSE(sut.has_credit());
-    }
-}
-
-TEST_F(RequestListTest, an_arrival_takes_its_slot_along_until_it_is_given_back)
-{
-    RequestList sut = make(2);
-    sut.ask(7, 0);
-    sut.ask(8, 0);
-
-    sut.arrive(7, 0);
-
-    EXPECT_FALSE(sut.is_under_way(7));
-    EXPECT_TRUE(sut.is_under_way(8));
-    EXPECT_FALSE(sut.has_credit());
-    sut.give_back_slot();
-    EXPECT_TRUE(sut.has_credit());
-    sut.ask(9, 1);
-    EXPECT_FALSE(sut.has_credit());
-}
-
-TEST_F(RequestListTest, a_request_expires_only_after_its_time)
-{
-    RequestList sut = make(3);
-    sut.ask(7, 100);
-
-    expire_all(3, 100 + kRequestTimeoutFrames);
-    EXPECT_TRUE(sut.is_under_way(7));
-    expire_all(3, 100 + kRequestTimeoutFrames + 1);
-
-    EXPECT_FALSE(sut.is_under_way(7));
-    sut.ask(7, 400);
-    EXPECT_TRUE(sut.is_under_way(7));
-}
-
 TEST_F(RequestListTest, a_request_waits_as_long_as_it_is_told)
 {
     for (const std::uint32_t timeout : {1U, 25U, 2'500U})

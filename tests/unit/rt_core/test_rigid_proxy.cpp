@@ -68,6 +68,29 @@ TriangleList flat_mesh(double cell_m)
     return triangles;
 }
 
+/// Wall of a cylinder around the z axis, with `facets` facets whose middles are at the radius, each
+/// in `rings` pieces.
+TriangleList tube(double radius_m, double half_m, int facets, int rings)
+{
+    TriangleList list;
+    const double corner_m = radius_m / std::cos(std::numbers::pi / facets);
+    for (int i = 0; i < facets; ++i)
+    {
+        const auto at = [&](int k, double z)
+        {
+            const double angle = 2.0 * std::numbers::pi * k / facets;
+            return Vec3(corner_m * std::cos(angle), corner_m * std::sin(angle), z);
+        };
+        for (int ring = 0; ring < rings; ++ring)
+        {
+            const double from = half_m * (2.0 * ring / rings - 1.0);
+            const double to = half_m * (2.0 * (ring + 1) / rings - 1.0);
+            add_square(list, at(i, from), at(i + 1, from), at(i + 1, to), at(i, to));
+        }
+    }
+    return list;
+}
+
 /// Box at rest on a plane, just touching it.
 Rig box_on_plane(const Material& material)
 {
@@ -604,6 +627,53 @@ TEST(RigidProxy, viscosity_drags_a_turning_body)
     }
     EXPECT_LT(output.torque_nm.z(), -1e-4) << "it turns on corners that drag";
     EXPECT_LT(output.force_n.head<2>().norm(), 0.1 * output.force_n.z());
+}
+
+TEST(RigidProxy, force_and_torque_change_by_no_more_than_the_stiffness_times_the_motion)
+{
+    // The box moves over a cylinder of facets, pressed and rotated by a hand that never stops.
+    constexpr int kFacets = 48;
+    ToolSpec spec = tool_of(Box{kHalf});
+    Rig rig(spec, {{tube(0.05, 0.06, kFacets, 12), {}}});
+    rig.takes_steps = true;
+    rig.objects[0].pose.rotation = turn(Vec3(0, 1, 0), std::numbers::pi / 2.0);
+    rig.settle(Vec3(0, 0, 0.09), Mat3::Identity(), 50);
+    const double arm = kHalf.norm() + kRigidRadius;
+    const double facet = 2.0 * std::numbers::pi / kFacets;
+    ToolOutput last;
+    Vec3 last_hand(0, 0, 0);
+    Mat3 last_turn = Mat3::Identity();
+    Similarity last_place;
+    int contacts = 0;
+    for (int i = 0; i < 1'500; ++i)
+    {
+        const double t = 2e-3 * i;
+        const Vec3 hand(0.02 * std::sin(t), 0.02 * std::sin(1.7 * t), 0.058);
+        const Mat3 turned = turn(Vec3(1, 0.3, 0.2), 0.2 * std::sin(2.3 * t));
+        const ToolOutput output = rig.step(hand, turned);
+        const Similarity place = rig.sut.place();
+        if (i > 200 && last.in_contact && output.in_contact)
+        {
+            const auto length = [arm](const Vec3& way, const Mat3& from, const Mat3& to)
+            { return way.norm() + arm * Eigen::AngleAxisd(to * from.transpose()).angle(); };
+            const double moved = length(hand - last_hand, last_turn, turned) +
+                                 length(place.translation_m - last_place.translation_m,
+                                        last_place.rotation, place.rotation);
+            // Between facets: its angle, and the lever that changes by its width.
+            const double facet_n = facet * output.force_n.norm();
+            ASSERT_LE((output.force_n - last.force_n).norm(), kRigidStiffness * moved + facet_n)
+                << i;
+            ASSERT_LE((output.torque_nm - last.torque_nm).norm(),
+                      arm * (kRigidStiffness * moved + facet_n) + 0.05 * facet_n)
+                << i;
+            ++contacts;
+        }
+        last = output;
+        last_hand = hand;
+        last_turn = turned;
+        last_place = place;
+    }
+    EXPECT_GT(contacts, 1'000);
 }
 
 } // namespace tactus::test

@@ -11,34 +11,6 @@
 namespace tactus::test
 {
 
-TEST(SpscQueue, is_empty_at_first_and_leaves_the_value_alone)
-{
-    std::array<int, 3> slots{};
-    SpscQueue<int> sut(slots);
-    int value = 99;
-
-    EXPECT_FALSE(sut.try_pop(value));
-    EXPECT_EQ(value, 99);
-    EXPECT_EQ(sut.size(), 0U);
-    EXPECT_EQ(sut.capacity(), 3U);
-}
-
-TEST(SpscQueue, of_one_slot_takes_one_and_refuses_the_second)
-{
-    std::array<int, 1> slots{};
-    SpscQueue<int> sut(slots);
-    int value = 0;
-
-    for (int round = 0; round < 5; ++round)
-    {
-        EXPECT_TRUE(sut.try_push(round));
-        EXPECT_FALSE(sut.try_push(-1));
-        EXPECT_TRUE(sut.try_pop(value));
-        EXPECT_EQ(value, round);
-        EXPECT_FALSE(sut.try_pop(value));
-    }
-}
-
 TEST(SpscQueue, refuses_one_too_many_and_keeps_the_order_round_the_end)
 {
     std::array<int, 5> slots{};

@@ -9,18 +9,6 @@
 namespace tactus::test
 {
 
-TEST(StaticVector, is_empty_at_first)
-{
-    const StaticVector<int, 3> sut;
-
-    EXPECT_TRUE(sut.empty());
-    EXPECT_FALSE(sut.full());
-    EXPECT_EQ(sut.size(), 0U);
-    EXPECT_EQ(sut.capacity(), 3U);
-    EXPECT_EQ(sut.begin(), sut.end());
-    EXPECT_TRUE(sut.view().empty());
-}
-
 TEST(StaticVector, takes_its_capacity_and_refuses_one_more)
 {
     StaticVector<int, 3> sut;

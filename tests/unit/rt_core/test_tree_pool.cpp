@@ -158,33 +158,6 @@ TEST(TreePool, trees_that_change_in_turns_stay_sound_and_their_own)
     }
 }
 
-TEST(TreePool, one_tree_cant_take_what_is_kept_for_another)
-{
-    constexpr std::uint32_t kKept = 40;
-    SharedTrees sut({kTrees * kPrimsEach, 130, 130}, {0, kKept, kKept});
-    Random random(5);
-    for (std::uint32_t i = 0; i < kPrimsEach; ++i)
-    {
-        sut.insert(0, own_face(random, 0, i));
-        sut.trees[0]->refit();
-    }
-    EXPECT_FALSE(sut.trees[0]->is_complete());
-    EXPECT_LE(sut.trees[0]->blocks_used(), 130 - 2 * kKept);
-    EXPECT_EQ(sut.faults(0), "");
-
-    for (std::uint32_t tree = 1; tree < kTrees; ++tree)
-    {
-        EXPECT_TRUE(sut.trees[tree]->has_room_for(kKept - AbTree::kReserve));
-        for (std::uint32_t i = 0; i < 20; ++i)
-        {
-            sut.insert(tree, own_face(random, tree, i));
-        }
-        sut.trees[tree]->refit();
-        EXPECT_TRUE(sut.trees[tree]->is_complete());
-        EXPECT_EQ(sut.faults(tree), "");
-    }
-}
-
 TEST(TreePool, what_is_freed_while_it_waits_for_refit_is_the_pool_s_after_it)
 {
     SharedTrees sut({kTrees * kPrimsEach, 300, 300}, {});

@@ -426,42 +426,6 @@ TEST(Vicinity, knows_how_far_a_way_is_free_of_a_face)
     EXPECT_LT(touched, 1'800);
 }
 
-TEST(Vicinity, of_every_set_of_kernels_finds_the_same)
-{
-    Random random(66);
-    const ObjectPose pose = turned();
-    const Material material;
-    for (int i = 0; i < 300; ++i)
-    {
-        const TriangleList list = scattered(random, 200);
-        const Vec3 center = to_world(pose, random.in_cube(0.5));
-        const auto surface = surface_of(list, to_model(pose, center), 10.0);
-        const double radius = pose.scale * distance_to(list, to_model(pose, center)) * 0.9;
-        const std::array<Vec3, 3> motions{random.in_cube(0.5), random.in_cube(0.5),
-                                          random.in_cube(0.5)};
-        std::vector<std::vector<double>> answers;
-        with_each_set({&pose, surface.get(), &material, 1e-6},
-                      [&](const PlacedSurface& placed)
-                      {
-                          Vicinity sut({&placed, 1}, center, 10.0);
-                          std::vector<double> answer;
-                          for (const Vec3& motion : motions)
-                          {
-                              const auto entered = sut.find_entered(motion, radius);
-                              answer.push_back(entered ? static_cast<double>(*entered) : -1.0);
-                              answer.push_back(sut.free_share(motion, radius));
-                              answer.push_back(sut.bound_of_surface(0, motion));
-                              sut.stand_at(0.1 * motion, Vec3(0, 0, 1));
-                          }
-                          answers.push_back(answer);
-                      });
-        for (const std::vector<double>& answer : answers)
-        {
-            ASSERT_EQ(answer, answers.front());
-        }
-    }
-}
-
 TEST(Vicinity, a_sphere_in_a_face_goes_no_way_along_it_or_deeper)
 {
     const ObjectPose pose;

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <memory>
 #include <random>
 #include <string>
 #include <thread>
@@ -351,50 +350,6 @@ TEST(ChunkLoader, refuses_a_damaged_piece_with_nothing_changed_and_asks_when_req
     ASSERT_FALSE(road.lines.empty());
     EXPECT_EQ(road.lines[0], "model 'road': index page 0 does not match its hash in the header; "
                              "refused, nothing changed");
-}
-
-TEST(ChunkLoader, refuses_a_sound_piece_under_another_one_s_key)
-{
-    const TinyModel model = make_tiny_model({.records = 200});
-    /// Link that answers every request for a chunk with chunk 1.
-    class Liar final : public ChunkLink
-    {
-    public:
-        explicit Liar(const TinyModel& model) : model_(model) {}
-        void request(std::span<const ContentKey> keys, std::uint32_t /*generation*/) override
-        {
-            keys_.assign(keys.begin(), keys.end());
-        }
-        void poll(PieceSink& sink) override
-        {
-            for (const ContentKey key : keys_)
-            {
-                sink.receive(key,
-                             key.kind == ContentKind::chunk ? model_.chunks[1] : model_.piece(key));
-            }
-            keys_.clear();
-        }
-        [[nodiscard]] LinkState state() const override { return LinkState::connected; }
-        [[nodiscard]] std::uint64_t session() const override { return 1; }
-        [[nodiscard]] std::uint64_t bytes_received() const override { return 0; }
-
-    private:
-        const TinyModel& model_;
-        std::vector<ContentKey> keys_;
-    } liar(model);
-    QueueSide side(model, 4, 1, 8);
-    ChunkLoader sut(side.arena, side.slots, side.queues, {});
-    sut.add(side.header, side.linker, liar, "liar");
-    ASSERT_TRUE(side.request(index_key(0)));
-    sut.step(1);
-    ASSERT_EQ(side.adopt(), 1U);
-    ASSERT_TRUE(side.request(chunk_key(0)));
-    ASSERT_TRUE(side.request(chunk_key(1)));
-    sut.step(2);
-    EXPECT_EQ(side.adopt(), 1U);
-    EXPECT_TRUE(side.owns(chunk_key(1)));
-    EXPECT_EQ(sut.counters().refused_hash, 1U);
-    EXPECT_EQ(sut.free_pages(), 3U);
 }
 
 TEST(ChunkLoader, brings_each_model_its_own_pieces_of_the_same_numbers)

@@ -2,10 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/shared/sanitizers.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
-#include "tests/unit/transport/queue_side.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/base_fetch.hpp"
-#include "transport/chunk_loader.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/dds_server.hpp"
@@ -19,12 +17,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fcntl.h>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <netinet/in.h>
+#include <spawn.h>
 #include <string>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -46,7 +44,6 @@ using test::eventually;
 using test::kPatience;
 using test::Lines;
 using test::make_tiny_model;
-using test::QueueSide;
 using test::TemporaryFolder;
 using test::TinyModel;
 
@@ -414,37 +411,6 @@ TEST_F(Dds, a_model_that_is_announced_otherwise_than_it_is_is_refused_or_never_c
     }
 }
 
-TEST_F(Dds, a_chunk_loader_fills_the_door_over_dds)
-{
-    const TinyModel model = make_tiny_model({.records = 64 * 8});
-    connect(model);
-    QueueSide side(model, 8, 1, 32);
-    ChunkLoader sut(side.arena, side.slots, side.queues, lines.log());
-    sut.add(side.header, side.linker, *served.link, "tiny");
-    std::int64_t now_ns = 0;
-    const auto comes = [&](std::size_t count)
-    {
-        std::size_t adopted = 0;
-        return eventually(
-            [&]
-            {
-                sut.step(now_ns += 1'000'000);
-                adopted += side.adopt();
-                return adopted == count;
-            });
-    };
-    ASSERT_TRUE(side.request({ContentKind::index_page, 0}));
-    ASSERT_TRUE(comes(1));
-    for (std::uint32_t chunk = 0; chunk < 8; ++chunk)
-    {
-        ASSERT_TRUE(side.request({ContentKind::chunk, chunk}));
-    }
-    ASSERT_TRUE(comes(8));
-    side.check_links();
-    EXPECT_EQ(side.linker.records_linked(), model.records.size());
-    EXPECT_EQ(sut.counters().refused(), 0U);
-}
-
 TEST_F(Dds, two_controllers_get_what_each_asked_for_and_nothing_else)
 {
     const TinyModel model = make_tiny_model({.records = 64 * 40});
@@ -715,7 +681,7 @@ TEST_F(Dds, without_a_configuration_of_the_user_nothing_from_outside_the_machine
     ::close(other);
 }
 
-/// The program itself, so that it can be killed as a process.
+/// spm_publish, killed at the end.
 class Program
 {
 public:
@@ -728,81 +694,19 @@ public:
             pointers.push_back(argument.data());
         }
         pointers.push_back(nullptr);
-        EXPECT_EQ(::pipe2(pipe_, O_CLOEXEC), 0);
-        pid_ = ::fork();
-        if (pid_ == 0)
-        {
-            ::dup2(pipe_[1], STDOUT_FILENO);
-            ::dup2(pipe_[1], STDERR_FILENO);
-            ::execv(pointers[0], pointers.data());
-            ::_exit(127);
-        }
-        ::close(pipe_[1]);
+        EXPECT_EQ(::posix_spawn(&pid_, pointers[0], nullptr, nullptr, pointers.data(), environ), 0);
     }
     ~Program()
     {
-        if (pid_ > 0)
-        {
-            static_cast<void>(end(SIGKILL));
-        }
-        ::close(pipe_[0]);
+        ::kill(pid_, SIGKILL);
+        ::waitpid(pid_, nullptr, 0);
     }
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
-    /// Sends a signal, if any, and waits; returns the exit code, or minus the signal that killed
-    /// it.
-    int end(int signal = 0)
-    {
-        if (signal != 0)
-        {
-            ::kill(pid_, signal);
-        }
-        int status = 0;
-        ::waitpid(pid_, &status, 0);
-        pid_ = 0;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    }
-    /// Whole output until the end.
-    std::string output()
-    {
-        std::string text;
-        char buffer[512];
-        for (ssize_t count = 1; count > 0;)
-        {
-            count = ::read(pipe_[0], buffer, sizeof(buffer));
-            text.append(buffer, count > 0 ? static_cast<std::size_t>(count) : 0);
-        }
-        return text;
-    }
-
 private:
-    int pipe_[2]{-1, -1};
     pid_t pid_{0};
 };
-
-TEST_F(Dds, a_server_that_is_killed_is_noticed_and_its_successor_adopted)
-{
-    test::isolate_domains(1);
-    const TinyModel model = make_tiny_model({});
-    const std::string path = folder.write("tiny.spm", model.file).string();
-    const auto program = [&] { return std::make_unique<Program>(std::vector<std::string>{path}); };
-    auto publisher = program();
-    controller = client();
-    served = found(*controller);
-    ChunkLink& sut = *served.link;
-    Collector got;
-    EXPECT_EQ(publisher->end(SIGKILL), -SIGKILL);
-    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::server_gone; }));
-    publisher = program();
-    ASSERT_TRUE(polled_until(sut, got, [&] { return sut.state() == LinkState::connected; }));
-    EXPECT_EQ(publisher->end(SIGTERM), 0);
-    const std::string output = publisher->output();
-    EXPECT_NE(output.find("serving 'tiny' hash " + hash_text(model_hash(model.header))),
-              std::string::npos)
-        << output;
-    EXPECT_NE(output.find("ended; "), std::string::npos) << output;
-}
 
 /// Controllers without a user's configuration have no known ports.
 TEST_F(Dds, a_controller_finds_a_server_that_starts_after_it_and_keeps_one_of_its_process_out)
@@ -841,26 +745,6 @@ TEST_F(Dds,
     ASSERT_TRUE(sut) << sut.error().text;
     const auto found = sut.value()->find({"tiny", std::nullopt}, kPatience);
     EXPECT_TRUE(found) << found.error().text;
-}
-
-TEST_F(Dds, spm_publish_refuses_wrong_files_and_names_with_one_line)
-{
-    const std::string good = folder.write("good.spm", make_tiny_model({}).file).string();
-    const std::string bad = folder.write("bad.spm", std::vector<std::byte>(3)).string();
-    const auto expect = [](std::vector<std::string> arguments, int code, const std::string& part)
-    {
-        Program sut(std::move(arguments));
-        EXPECT_EQ(sut.end(), code);
-        const std::string output = sut.output();
-        EXPECT_NE(output.find(part), std::string::npos) << output;
-        EXPECT_EQ(std::ranges::count(output, '\n'), 1) << output;
-    };
-    expect({good, bad}, 2, "bad.spm: is not an SPM model");
-    expect({good, good}, 3, "would both be published as 'good'");
-    expect({good, "--name", "a b"}, 3, "--name 'a b' is not 1 to 63 bytes");
-    expect({good, "--name", "a", "--name", "b"}, 3, "--name is given 2 times for 1 files");
-    expect({good, "--domain", "233"}, 3, "--domain");
-    expect({folder.path() / "none.spm"}, 2, "none.spm: cannot be opened: No such file");
 }
 
 } // namespace

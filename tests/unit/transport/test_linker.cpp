@@ -337,50 +337,5 @@ TEST(Linker, a_foreign_id_does_not_get_past_parse)
     EXPECT_FALSE(parse([](CodedRecord& c) { c.anchor = {6, CodedRecord::Owner::Kind::base, {}}; }));
 }
 
-TEST(Linker, models_of_one_pool_have_chunks_of_the_same_numbers)
-{
-    const TinyModel first = make_tiny_model({.seed = 1, .records = 64 * 3});
-    const TinyModel second = make_tiny_model({.seed = 2, .records = 64 * 3});
-    QueueSide side(first, 6, 1, 1);
-    const ModelHeader header = parse_trusted_header(second.header).value();
-    const PageSlots slots = side.slots.of_model(side.arena, second.counts);
-    ASSERT_TRUE(load_base_mesh(second.base, header, slots.base).has_value());
-    Linker other(side.link_pool, 1, header, slots);
-    const auto bring = [&](bool is_first, std::uint32_t chunk, std::uint32_t slot)
-    {
-        const TinyModel& model = is_first ? first : second;
-        ASSERT_TRUE(parse_chunk(model.chunks[chunk], is_first ? side.header : header, {chunk},
-                                side.slots.pages[slot])
-                        .has_value());
-        (is_first ? side.linker : other).link_page({chunk}, slot);
-    };
-    for (const std::uint32_t chunk : {2U, 0U, 1U}) // Some records then wait.
-    {
-        bring(true, chunk, 2 * chunk);
-        bring(false, chunk, 2 * chunk + 1);
-    }
-    EXPECT_EQ(side.linker.records_linked(), first.records.size());
-    EXPECT_EQ(other.records_linked(), second.records.size());
-
-    for (const std::uint32_t chunk : {0U, 1U, 2U})
-    {
-        side.linker.release_page(2 * chunk);
-        EXPECT_FALSE(side.linker.is_resident({chunk}));
-        EXPECT_TRUE(other.is_resident({chunk}));
-        EXPECT_EQ(other.linked(2 * chunk + 1), ~std::uint64_t{0});
-    }
-    for (const std::uint32_t chunk : {0U, 1U, 2U}) // Slots of the other model.
-    {
-        other.release_page(2 * chunk + 1);
-        bring(true, chunk, 2 * chunk + 1);
-    }
-    EXPECT_EQ(side.linker.records_linked(), 2 * first.records.size());
-    for (std::uint32_t record = 0; record < first.records.size(); ++record)
-    {
-        const VsplitRecord& got = side.slots.pages[2 * (record / 64) + 1].records[record % 64];
-        EXPECT_EQ(got.next, first.records[record].next) << "record " << record;
-    }
-}
-
 } // namespace
 } // namespace tactus
