@@ -8,6 +8,7 @@
 #include "tests/bench/force_rows.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/rigid_sweeps.hpp"
+#include "tests/bench/sheet_tool_cases.hpp"
 #include "tests/bench/suites.hpp"
 
 #include <fmt/format.h>
@@ -312,6 +313,8 @@ std::vector<Case> force_cases()
                          }});
     }
     cases.push_back({"rigid", When::always, run_rigid_sweeps});
+    cases.push_back({"sheets", When::always, run_sheet_tools});
+    cases.push_back({"dense", When::always, run_dense_meshes});
     cases.push_back({"units", When::always, run_units});
     cases.push_back({"recorded", When::always,
                      [](const CaseContext& context) { add_recorded_peer(context.rows); }});
