@@ -6,7 +6,8 @@
 
 #include <cstdint>
 
-/// Checks of the machine. Each returns one finding.
+/// Checks of the machine. Each returns one finding, without name and effect: both are in the table
+/// of examine().
 namespace tactus::doctor
 {
 

@@ -78,10 +78,9 @@ std::string remedy_for(const Interface& interface)
 
 /// Critical if a named interface is missing, down or without a link; unknown if its state is
 /// unreadable.
-Finding judge_named(Finding finding, const SystemFiles& files,
-                    const std::vector<std::string>& names)
+Finding judge_named(const SystemFiles& files, const std::vector<std::string>& names)
 {
-    finding.verdict = Verdict::good;
+    Finding finding{.verdict = Verdict::good};
     for (const std::string& name : names)
     {
         const Interface interface = look_at(files, name);
@@ -103,8 +102,9 @@ Finding judge_named(Finding finding, const SystemFiles& files,
 }
 
 /// DDS chooses an interface that is up, and prefers one with a network.
-Finding judge_any(Finding finding, const SystemFiles& files)
+Finding judge_any(const SystemFiles& files)
 {
+    Finding finding;
     std::string loopback;
     std::string off;
     for (const std::string& name : files.names("/sys/class/net"))
@@ -132,12 +132,7 @@ Finding judge_any(Finding finding, const SystemFiles& files)
 
 Finding check_dds_configuration(const MachineView& view)
 {
-    Finding finding{"dds-configuration",
-                    Verdict::good,
-                    "",
-                    "Without CYCLONEDDS_URI, hrtc finds only models of this machine (interface lo, "
-                    "no multicast). With CYCLONEDDS_URI, DDS uses that configuration unchanged.",
-                    {}};
+    Finding finding{.verdict = Verdict::good};
     if (view.measured.dds_uri.empty())
     {
         finding.found = "CYCLONEDDS_URI is not set";
@@ -157,36 +152,23 @@ Finding check_dds_configuration(const MachineView& view)
 
 Finding check_dds_interface(const MachineView& view)
 {
-    Finding finding{"dds-interface",
-                    Verdict::unknown,
-                    "",
-                    "If the interface does not exist, is down or has no link, hrtc gets models "
-                    "only from files.",
-                    {}};
     if (view.files.names("/sys/class/net").empty())
     {
-        return unreadable(std::move(finding), view.files, "/sys/class/net");
+        return unreadable(view.files, "/sys/class/net");
     }
     if (view.measured.dds_uri.empty())
     {
-        return judge_named(std::move(finding), view.files, {"lo"});
+        return judge_named(view.files, {"lo"});
     }
     const DdsConfiguration configuration =
         read_dds_configuration(view.measured.dds_uri, view.files);
-    return configuration.interfaces.empty()
-               ? judge_any(std::move(finding), view.files)
-               : judge_named(std::move(finding), view.files, configuration.interfaces);
+    return configuration.interfaces.empty() ? judge_any(view.files)
+                                            : judge_named(view.files, configuration.interfaces);
 }
 
 Finding check_dds_buffers(const MachineView& view)
 {
-    Finding finding{
-        "dds-buffers",
-        Verdict::good,
-        "",
-        "A burst of chunks larger than the buffer of the socket is lost and sent again. Until "
-        "then, answers stay bounded. DDS requests 1 MiB for receiving and 64 KiB for sending.",
-        {}};
+    Finding finding{.verdict = Verdict::good};
     for (const auto& [name, least] :
          {std::pair("rmem_max", kReceiveBytes), std::pair("wmem_max", kSendBytes)})
     {
@@ -195,7 +177,7 @@ Finding check_dds_buffers(const MachineView& view)
         const auto bytes = text ? parse_integer(*text) : std::nullopt;
         if (!bytes || *bytes < 0)
         {
-            return unreadable(std::move(finding), view.files, path);
+            return unreadable(view.files, path);
         }
         finding.found +=
             fmt::format("{}{} {} bytes", finding.found.empty() ? "" : ", ", name, *bytes);
