@@ -25,7 +25,7 @@ public:
 
     /// Material of the object called `name`: the one given for that name, or else for all, or else
     /// `said`, the object's material in the scene.
-    [[nodiscard]] const Material& felt(std::string_view name, const Material& said) const;
+    [[nodiscard]] const Material& material_for(std::string_view name, const Material& said) const;
 
     /// Message on the first name with a material that none of `objects` has; empty if all have one.
     [[nodiscard]] std::string missing(std::span<const std::string> objects) const;

@@ -277,7 +277,7 @@ std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
                                                const Options& options) const
 {
     const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
-    return bring_bases(models, wait, goes_on_);
+    return fetch_base_meshes(models, wait, goes_on_);
 }
 
 /// Plans the pools of a scene for streamed models, which need not all be resident at once. False,

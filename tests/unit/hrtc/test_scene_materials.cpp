@@ -18,13 +18,13 @@ TEST(SceneMaterials, of_one_object_go_before_that_of_all_and_both_before_the_sce
 {
     SceneMaterials sut;
     const Material said{400.0};
-    EXPECT_EQ(sut.felt("cup", said), said);
+    EXPECT_EQ(sut.material_for("cup", said), said);
     ASSERT_EQ(sut.take(Words{"cup:800,0.6,0.4"}), "");
-    EXPECT_EQ(sut.felt("cup", said), (Material{800.0, 0.6, 0.4}));
-    EXPECT_EQ(sut.felt("pot", said), said);
+    EXPECT_EQ(sut.material_for("cup", said), (Material{800.0, 0.6, 0.4}));
+    EXPECT_EQ(sut.material_for("pot", said), said);
     ASSERT_EQ(sut.take(Words{"stiffness=200,damping=1"}), "");
-    EXPECT_EQ(sut.felt("cup", said), (Material{800.0, 0.6, 0.4}));
-    EXPECT_EQ(sut.felt("pot", said), (Material{200.0, 0.0, 0.0, 1.0}));
+    EXPECT_EQ(sut.material_for("cup", said), (Material{800.0, 0.6, 0.4}));
+    EXPECT_EQ(sut.material_for("pot", said), (Material{200.0, 0.0, 0.0, 1.0}));
 }
 
 TEST(SceneMaterials, are_refused_for_what_is_wrong_with_them)

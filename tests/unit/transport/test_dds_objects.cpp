@@ -715,7 +715,7 @@ TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
             for (const auto& each : crowd)
             {
                 each->step();
-                joining += each->client().exchange().is_let_in(server->epoch()) &&
+                joining += each->client().exchange().is_admitted(server->epoch()) &&
                                    !each->scene().is_complete(server->epoch())
                                ? 1
                                : 0;
