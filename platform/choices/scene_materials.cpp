@@ -22,7 +22,7 @@ constexpr std::size_t kNamesTold = 8;
 
 } // namespace
 
-std::string SceneMaterials::take(std::span<const std::string> options)
+std::string SceneMaterials::parse(std::span<const std::string> options)
 {
     for (const std::string& text : options)
     {
