@@ -7,7 +7,7 @@
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "platform/scene/object_pose.hpp"
-#include "platform/scene/scene_room.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/limits.hpp"

@@ -4,7 +4,7 @@
 
 #include "platform/choices/messages.hpp"
 #include "platform/scene/object_pose.hpp"
-#include "platform/scene/scene_room.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/content_hash.hpp"
