@@ -84,7 +84,7 @@ bool ProgramScene::try_set_material(Key object, const Material& material)
         return false;
     }
     slot->spec.material = material;
-    slot->owes_feel = true;
+    slot->owes_material = true;
     queue(object.number);
     return true;
 }
@@ -172,17 +172,17 @@ bool ProgramScene::try_pass_on(std::uint32_t number, MonotonicTime now)
         }
         slot.is_told = true;
         slot.told_generation = slot.generation;
-        slot.owes_feel = false; // An added object has its newest material and pose.
+        slot.owes_material = false; // An added object has its newest material and pose.
         slot.owes_pose = false;
         mailbox_->note_heard(number, kAlways);
     }
-    if (slot.owes_feel)
+    if (slot.owes_material)
     {
         if (!mailbox_->try_set_material(number, slot.spec.material))
         {
             return false;
         }
-        slot.owes_feel = false;
+        slot.owes_material = false;
     }
     if (slot.owes_pose)
     {

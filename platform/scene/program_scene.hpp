@@ -66,7 +66,7 @@ private:
         bool is_resident{false};     ///< True if the program wants an object there.
         bool is_told{false};         ///< True if the mailbox has one.
         std::uint32_t told_generation{0};
-        bool owes_feel{false};
+        bool owes_material{false};
         bool owes_pose{false};
         bool is_queued{false}; ///< True if the number is in untold_.
     };
