@@ -737,7 +737,7 @@ TEST_F(DdsObjects, motion_that_is_not_heard_comes_by_another_writer)
     ASSERT_TRUE(step_until(
         [&]
         {
-            follower->client().exchange().tell_objects_are_here(server->epoch(), false);
+            follower->client().exchange().report_objects_received(server->epoch(), false);
             follower->client().exchange().step();
             return server->counters().renewed > 0;
         }));
