@@ -47,7 +47,7 @@ BaseFetch::State BaseFetch::step()
     const bool is_asked = model_.link->session() == session_ && Clock::now() - progress_ < kAgain;
     if (!is_asked && model_.link->state() == LinkState::connected)
     {
-        ask();
+        request_missing();
     }
     return state_;
 }
@@ -57,7 +57,7 @@ void BaseFetch::receive(ContentKey key, std::span<const std::byte> bytes)
     progress_ = parts_.receive(key, bytes) ? Clock::now() : progress_;
 }
 
-void BaseFetch::ask()
+void BaseFetch::request_missing()
 {
     session_ = model_.link->session();
     progress_ = Clock::now();
@@ -82,8 +82,9 @@ BaseFetch::State BaseFetch::check()
     return state_ = State::done;
 }
 
-std::optional<Refusal> bring_bases(std::span<ServedModel> models, std::chrono::milliseconds timeout,
-                                   const std::function<bool()>& go_on)
+std::optional<Refusal> fetch_base_meshes(std::span<ServedModel> models,
+                                         std::chrono::milliseconds timeout,
+                                         const std::function<bool()>& go_on)
 {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();

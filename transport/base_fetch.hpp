@@ -41,7 +41,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     void receive(ContentKey key, std::span<const std::byte> bytes) override;
-    void ask();
+    void request_missing();
     State check();
 
     ServedModel& model_;
@@ -55,8 +55,8 @@ private:
 /// Waits until all models have their base meshes, for at most `timeout`, or until `go_on`, called
 /// about once a millisecond, returns false. The refusal names a model without base mesh; the meshes
 /// fetched so far are kept.
-[[nodiscard]] std::optional<Refusal> bring_bases(std::span<ServedModel> models,
-                                                 std::chrono::milliseconds timeout,
-                                                 const std::function<bool()>& go_on = {});
+[[nodiscard]] std::optional<Refusal> fetch_base_meshes(std::span<ServedModel> models,
+                                                       std::chrono::milliseconds timeout,
+                                                       const std::function<bool()>& go_on = {});
 
 } // namespace tactus

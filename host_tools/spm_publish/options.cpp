@@ -120,7 +120,7 @@ std::string check_files(const Options& options)
 }
 
 /// Sets the names of the models or of the scene; returns the fault, or an empty text.
-std::string take_names(Options& options)
+std::string set_names(Options& options)
 {
     if (options.has_scene)
     {
@@ -175,7 +175,7 @@ std::string check_together(Options& options)
     {
         return fault;
     }
-    if (const std::string fault = take_names(options); !fault.empty())
+    if (const std::string fault = set_names(options); !fault.empty())
     {
         return fault;
     }

@@ -22,7 +22,7 @@ constexpr std::size_t kNamesTold = 8;
 
 } // namespace
 
-std::string SceneMaterials::take(std::span<const std::string> options)
+std::string SceneMaterials::parse(std::span<const std::string> options)
 {
     for (const std::string& text : options)
     {
@@ -58,7 +58,7 @@ std::string SceneMaterials::take(std::span<const std::string> options)
     return {};
 }
 
-const Material& SceneMaterials::felt(std::string_view name, const Material& said) const
+const Material& SceneMaterials::material_for(std::string_view name, const Material& said) const
 {
     const auto one = of_one_.find(name);
     return one != of_one_.end() ? one->second : of_all_ ? *of_all_ : said;

@@ -19,13 +19,13 @@ namespace tactus::hrtc
 class SceneMaterials
 {
 public:
-    /// Takes options of the form MATERIAL, for all objects, or OBJECT:MATERIAL. Returns the first
+    /// Parses options of the form MATERIAL, for all objects, or OBJECT:MATERIAL. Returns the first
     /// fault; empty if there is none.
-    [[nodiscard]] std::string take(std::span<const std::string> options);
+    [[nodiscard]] std::string parse(std::span<const std::string> options);
 
     /// Material of the object called `name`: the one given for that name, or else for all, or else
     /// `said`, the object's material in the scene.
-    [[nodiscard]] const Material& felt(std::string_view name, const Material& said) const;
+    [[nodiscard]] const Material& material_for(std::string_view name, const Material& said) const;
 
     /// Message on the first name with a material that none of `objects` has; empty if all have one.
     [[nodiscard]] std::string missing(std::span<const std::string> objects) const;

@@ -7,7 +7,7 @@
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "platform/scene/object_pose.hpp"
-#include "platform/scene/scene_room.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/limits.hpp"
@@ -277,7 +277,7 @@ std::optional<Refusal> Controller::fetch_bases(std::span<ServedModel> models,
                                                const Options& options) const
 {
     const auto wait = std::chrono::milliseconds(static_cast<std::int64_t>(options.wait_s * 1e3));
-    return bring_bases(models, wait, goes_on_);
+    return fetch_base_meshes(models, wait, goes_on_);
 }
 
 /// Plans the pools of a scene for streamed models, which need not all be resident at once. False,

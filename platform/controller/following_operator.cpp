@@ -29,7 +29,7 @@ FollowingOperator::FollowingOperator(std::unique_ptr<OperatorMotion> motion,
 {
 }
 
-void FollowingOperator::look() noexcept
+void FollowingOperator::update_way() noexcept
 {
     const Object& object = objects_[object_];
     if (!object.is_resident || (!has_moved_ && are_equal(object.pose, start_)))
@@ -51,7 +51,7 @@ void FollowingOperator::look() noexcept
 
 Vec3 FollowingOperator::next_world_m(const OperatorSense& sense) noexcept
 {
-    look();
+    update_way();
     if (!has_moved_)
     {
         return motion_->next_world_m(sense);

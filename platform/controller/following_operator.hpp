@@ -30,7 +30,7 @@ public:
 
 private:
     /// Updates `way_` from the object's pose. If the object isn't resident, `way_` stays.
-    void look() noexcept;
+    void update_way() noexcept;
 
     std::unique_ptr<OperatorMotion> motion_;
     const ObjectTable& objects_;

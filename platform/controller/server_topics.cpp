@@ -216,7 +216,7 @@ std::uint64_t ServerTopics::server_of(std::size_t model) const
 /// Passes edits to the mailbox. Edits without room there are offered again in the next step.
 void ServerTopics::pass_edits()
 {
-    if (const auto model = edit_mailbox_->take_refused())
+    if (const auto model = edit_mailbox_->take_refused_model())
     {
         edits_->end(model->value);
     }

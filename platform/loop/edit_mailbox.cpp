@@ -65,7 +65,7 @@ void EditMailbox::done(std::span<const ModelOutput> models) noexcept
     }
 }
 
-std::optional<ModelId> EditMailbox::take_refused() noexcept
+std::optional<ModelId> EditMailbox::take_refused_model() noexcept
 {
     const std::uint32_t refused = refused_.exchange(0, std::memory_order_relaxed);
     return refused > 0 ? std::optional(ModelId{refused - 1}) : std::nullopt;

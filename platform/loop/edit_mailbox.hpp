@@ -49,7 +49,7 @@ public:
 
     /// Transport thread: model of the last edit that a frame refused since the last call; none if
     /// there was none.
-    [[nodiscard]] std::optional<ModelId> take_refused() noexcept;
+    [[nodiscard]] std::optional<ModelId> take_refused_model() noexcept;
 
     /// Any thread: number of edits that frames have taken.
     [[nodiscard]] std::uint64_t taken() const noexcept

@@ -71,8 +71,8 @@ SceneMailbox::SceneMailbox(std::span<const ObjectPose> placed, std::size_t objec
     }
 }
 
-bool SceneMailbox::try_come(std::size_t object, std::uint32_t generation, const ObjectSpec& spec,
-                            const ObjectPose& pose, MonotonicTime arrival) noexcept
+bool SceneMailbox::try_add(std::size_t object, std::uint32_t generation, const ObjectSpec& spec,
+                           const ObjectPose& pose, MonotonicTime arrival) noexcept
 {
     TACTUS_ASSERT(object < samples_.size());
     TACTUS_ASSERT(generation > generations_[object] || numbers_[object] == 0);
@@ -87,11 +87,11 @@ bool SceneMailbox::try_come(std::size_t object, std::uint32_t generation, const 
     scene_event.sample = letter_of(object, pose, arrival);
     scene_event.model = spec.model.value;
     scene_event.material = spec.material;
-    hear(object, arrival);
+    note_heard(object, arrival);
     return scene_events_.try_push(scene_event);
 }
 
-bool SceneMailbox::try_go(std::size_t object) noexcept
+bool SceneMailbox::try_remove(std::size_t object) noexcept
 {
     TACTUS_ASSERT(object < samples_.size());
     SceneEvent scene_event;
@@ -100,7 +100,7 @@ bool SceneMailbox::try_go(std::size_t object) noexcept
     return scene_events_.try_push(scene_event);
 }
 
-bool SceneMailbox::try_feel(std::size_t object, const Material& material) noexcept
+bool SceneMailbox::try_set_material(std::size_t object, const Material& material) noexcept
 {
     TACTUS_ASSERT(object < samples_.size());
     SceneEvent scene_event;
@@ -115,7 +115,7 @@ void SceneMailbox::put(std::size_t object, const ObjectPose& pose, MonotonicTime
 {
     TACTUS_ASSERT(object < samples_.size());
     mailboxes_[object].write(letter_of(object, pose, arrival));
-    hear(object, arrival);
+    note_heard(object, arrival);
     // Pairs with the acquire in take_samples().
     came_[object / kWordBits].fetch_or(bit_of(object), std::memory_order_release);
 }
@@ -154,7 +154,7 @@ ObjectPose SceneMailbox::pose_of(const PoseSample& sample) noexcept
     return pose;
 }
 
-void SceneMailbox::hear(std::size_t object, MonotonicTime now) noexcept
+void SceneMailbox::note_heard(std::size_t object, MonotonicTime now) noexcept
 {
     TACTUS_ASSERT(object < samples_.size());
     heard_ns_[object].store(now.ns, std::memory_order_relaxed);
@@ -176,7 +176,7 @@ std::span<const SceneChange> SceneMailbox::refresh(MonotonicTime now,
     }
     std::size_t changes = take_scene_events();
     take_samples(now);
-    look_at_ages(now);
+    check_ages(now);
     // Objects near tools move in every frame; otherwise the surface would jump under the tool. They
     // take at most half of the changes.
     const std::size_t passed = changes;
@@ -263,7 +263,7 @@ void SceneMailbox::take_samples(MonotonicTime now) noexcept
     }
 }
 
-void SceneMailbox::look_at_ages(MonotonicTime now) noexcept
+void SceneMailbox::check_ages(MonotonicTime now) noexcept
 {
     const std::size_t objects = samples_.size();
     // Number of frames in which each object's age is checked once.

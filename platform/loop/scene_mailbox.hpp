@@ -79,21 +79,20 @@ public:
     }
 
     /// Transport thread: queues a new object under a free number. `generation` must exceed that of
-    /// the number's last object. Also calls hear(). False if the queue is full.
-    [[nodiscard]] bool try_come(std::size_t object, std::uint32_t generation,
-                                const ObjectSpec& spec, const ObjectPose& pose,
-                                MonotonicTime arrival) noexcept;
+    /// the number's last object. Also calls note_heard(). False if the queue is full.
+    [[nodiscard]] bool try_add(std::size_t object, std::uint32_t generation, const ObjectSpec& spec,
+                               const ObjectPose& pose, MonotonicTime arrival) noexcept;
     /// Transport thread: queues the removal of the object of that number. False if the queue is
     /// full.
-    [[nodiscard]] bool try_go(std::size_t object) noexcept;
+    [[nodiscard]] bool try_remove(std::size_t object) noexcept;
     /// Transport thread: queues another material for the object. False if the queue is full.
-    [[nodiscard]] bool try_feel(std::size_t object, const Material& material) noexcept;
+    [[nodiscard]] bool try_set_material(std::size_t object, const Material& material) noexcept;
 
-    /// Transport thread: passes a pose of an existing object, and calls hear(). `arrival`: on the
-    /// clock of refresh().
+    /// Transport thread: passes a pose of an existing object, and calls note_heard(). `arrival`: on
+    /// the clock of refresh().
     void put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept;
     /// Transport thread: notes that the object's server was heard at `now`.
-    void hear(std::size_t object, MonotonicTime now) noexcept;
+    void note_heard(std::size_t object, MonotonicTime now) noexcept;
 
     /// Haptic thread, at the start of a frame: returns the changes of the scene, at most
     /// kMaxSceneChanges, valid until the next call. They also tell the frame which objects' servers
@@ -163,7 +162,7 @@ private:
     [[nodiscard]] static ObjectPose pose_of(const PoseSample& sample) noexcept;
     [[nodiscard]] std::size_t take_scene_events() noexcept;
     void take_samples(MonotonicTime now) noexcept;
-    void look_at_ages(MonotonicTime now) noexcept;
+    void check_ages(MonotonicTime now) noexcept;
     [[nodiscard]] bool try_move(std::size_t object, MonotonicTime now,
                                 SceneChange& change) noexcept;
     void begin_blend(std::size_t object, const PoseSample& sample, MonotonicTime now) noexcept;

@@ -13,7 +13,7 @@ void Supervisor::run() noexcept
 {
     while (!stopped_.load(std::memory_order_relaxed))
     {
-        const Duration until = look() - parts_.clock->now();
+        const Duration until = check() - parts_.clock->now();
         const Duration sleep =
             std::clamp(until, PeriodicTimer::kPeriodMin, PeriodicTimer::kPeriodMax);
         // start() refuses only periods out of range.
@@ -22,7 +22,7 @@ void Supervisor::run() noexcept
     }
 }
 
-MonotonicTime Supervisor::look() noexcept
+MonotonicTime Supervisor::check() noexcept
 {
     const Duration patience = parts_.period * parts_.silent_periods;
     const std::optional<MonotonicTime> last = parts_.heartbeat->last();

@@ -51,7 +51,7 @@ public:
     /// Checks once, and brakes softly if the loop is silent for long enough. At a later check in
     /// the same silence, kBrakeFade or more afterwards, it brakes at once. Returns the time of the
     /// next check.
-    [[nodiscard]] MonotonicTime look() noexcept;
+    [[nodiscard]] MonotonicTime check() noexcept;
 
     /// Any thread: ends run() within `silent_periods` periods.
     void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }

@@ -64,12 +64,12 @@ const ToolState& ToolPort::read(std::uint32_t periods) noexcept
     {
         state_.position_m = pose_.position_m;
     }
-    look();
+    record_sample();
     return state_;
 }
 
 /// Copies the sample's data that the ToolState lacks into record_.
-void ToolPort::look() noexcept
+void ToolPort::record_sample() noexcept
 {
     record_.connected = sample_.connected;
     record_.deadman_held = sample_.deadman_held;

@@ -91,7 +91,7 @@ public:
     void brake() noexcept;
 
 private:
-    void look() noexcept;
+    void record_sample() noexcept;
     [[nodiscard]] ExternalForce external_force(const ToolOutput& output) noexcept;
     [[nodiscard]] double take_back() noexcept;
     void release_brake() noexcept;

@@ -95,7 +95,7 @@ bool is_file_name(const std::string& text, const FileReaders& readers)
            readers.is_mesh_name(text) || readers.is_scene_name(text);
 }
 
-std::string take_files(Options& options, RawOptions& raw, const std::string& commands)
+std::string assign_files(Options& options, RawOptions& raw, const std::string& commands)
 {
     for (const std::string& file : raw.files)
     {

@@ -21,8 +21,8 @@ namespace tactus::hrtc
 /// --transport, chooses the transport: `file` if all names are files, `dds` if none is. Returns the
 /// message for wrong usage; empty if there is none. `commands`: names of the program's other
 /// commands, for that message.
-[[nodiscard]] std::string take_files(Options& options, RawOptions& raw,
-                                     const std::string& commands);
+[[nodiscard]] std::string assign_files(Options& options, RawOptions& raw,
+                                       const std::string& commands);
 
 /// Authenticator with the key in this file: 64 hexadecimal digits, with white space around them.
 /// Tags are keyed BLAKE2b (RFC 7693) of 16 bytes. Refused if the file can't be read, has other

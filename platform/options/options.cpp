@@ -175,7 +175,7 @@ std::string check_models(Options& options, const RawOptions& raw)
         {
             return "--scene: can't be combined with --model and --place";
         }
-        if (std::string fault = options.scene_materials.take(raw.materials); !fault.empty())
+        if (std::string fault = options.scene_materials.parse(raw.materials); !fault.empty())
         {
             return fault;
         }
@@ -275,8 +275,8 @@ std::string check_materials(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Fault of --force-shading; empty if none. Called after take_tools().
-std::string check_shading(Options& options, const RawOptions& /*raw*/)
+/// Fault of --force-shading; empty if none. Called after set_tools().
+std::string check_shading(const Options& options)
 {
     return options.shading_m > 0.0 && std::ranges::none_of(options.tools, &is_round)
                ? "--force-shading: needs a point or a sphere as --tool"
@@ -301,7 +301,7 @@ bool has_device(const Options& options, DeviceKind kind)
 }
 
 /// Fault of --device-key; empty if none.
-std::string check_device_key(Options& options, const RawOptions& raw)
+std::string check_device_key(const Options& options, const RawOptions& raw)
 {
     return !raw.device_key || has_device(options, DeviceKind::udp)
                ? ""
@@ -310,7 +310,7 @@ std::string check_device_key(Options& options, const RawOptions& raw)
 
 /// Gives all UDP devices the key of the file. Called once the options are valid, because a bad file
 /// is no wrong usage. Returns the fault; empty if none.
-std::string take_device_key(Options& options, const RawOptions& raw)
+std::string set_device_key(Options& options, const RawOptions& raw)
 {
     if (!raw.device_key)
     {
@@ -329,7 +329,7 @@ std::string take_device_key(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Sets the device faults. Called after take_tools(). Returns the fault; empty if none.
+/// Sets the device faults. Called after set_tools(). Returns the fault; empty if none.
 std::string check_faults(Options& options, const RawOptions& raw)
 {
     if (raw.device_faults.size() > kDeviceFaultsMax)
@@ -354,6 +354,10 @@ std::string check_faults(Options& options, const RawOptions& raw)
 /// Checks the names of the controller and of published models. Returns the fault; empty if none.
 std::string check_names(const CommandLine& line, const Options& options)
 {
+    if (!options.is_watched)
+    {
+        return {};
+    }
     if (line.is_given("--name") && !is_valid_name(options.name))
     {
         return fmt::format("--name: '{}' is not {}", printable(options.name), kNameForm);
@@ -381,7 +385,7 @@ std::string check_names(const CommandLine& line, const Options& options)
 }
 
 /// Sets the failover servers. Returns the fault; empty if none.
-std::string take_failover(Options& options, const RawOptions& raw)
+std::string set_failover(Options& options, const RawOptions& raw)
 {
     if (!raw.failover.empty() && options.transport == TransportKind::file)
     {
@@ -488,44 +492,9 @@ std::string check_kernels(Options& options, const RawOptions& raw)
     return {};
 }
 
-/// Checks combinations of options. Returns the fault; empty if none.
-std::string check_together(const CommandLine& line, Options& options, RawOptions& raw,
-                           const std::string& commands)
+/// Sets the transport and what depends on it. Returns the fault; empty if none.
+std::string set_transport(const CommandLine& line, Options& options, const RawOptions& raw)
 {
-    if (const std::string fault = check_files(line, options); !fault.empty())
-    {
-        return fault;
-    }
-    if (const std::string fault = check_kernels(options, raw); !fault.empty())
-    {
-        return fault;
-    }
-    if (!options.replay_path.empty())
-    {
-        return check_replay(line);
-    }
-    if (const std::string fault = take_tools(options, raw); !fault.empty())
-    {
-        return fault;
-    }
-    if (const std::string fault = take_files(options, raw, commands); !fault.empty())
-    {
-        return fault;
-    }
-    for (const auto check : {check_models, check_places, check_materials, check_shading,
-                             check_device_key, check_faults})
-    {
-        if (const std::string fault = check(options, raw); !fault.empty())
-        {
-            return fault;
-        }
-    }
-    if (const std::string fault = check_budgets(line, options); !fault.empty())
-    {
-        return fault;
-    }
-    options.prediction = static_cast<Prediction>(
-        std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.transport = raw.transport == "file" ? TransportKind::file : TransportKind::dds;
     if (std::string fault = check_edits(options); !fault.empty())
     {
@@ -537,15 +506,58 @@ std::string check_together(const CommandLine& line, Options& options, RawOptions
     {
         log_message(LogLevel::info, "hrtc", "note: --domain has no effect with --virtual-time");
     }
-    if (const std::string fault = check_virtual_time(options, raw); !fault.empty())
+    return {};
+}
+
+/// Parts of a command line that the checks below need.
+struct Parsed
+{
+    const CommandLine& line;
+    Options& options;
+    RawOptions& raw;
+    const CommandForm& form;
+};
+
+using OptionCheck = std::string (*)(const Parsed&);
+
+/// Checks of the options, in this order: a check may use the values set by earlier ones. Each
+/// returns its fault; empty if there is none.
+constexpr OptionCheck kOfReplay[] = {
+    [](const Parsed& p) { return check_files(p.line, p.options); },
+    [](const Parsed& p) { return check_kernels(p.options, p.raw); },
+    [](const Parsed& p) { return check_replay(p.line); },
+};
+constexpr OptionCheck kOfRun[] = {
+    [](const Parsed& p) { return check_files(p.line, p.options); },
+    [](const Parsed& p) { return check_kernels(p.options, p.raw); },
+    [](const Parsed& p) { return set_tools(p.options, p.raw); },
+    [](const Parsed& p) { return assign_files(p.options, p.raw, p.form.commands); },
+    [](const Parsed& p) { return check_models(p.options, p.raw); },
+    [](const Parsed& p) { return check_places(p.options, p.raw); },
+    [](const Parsed& p) { return check_materials(p.options, p.raw); },
+    [](const Parsed& p) { return check_shading(p.options); },
+    [](const Parsed& p) { return check_device_key(p.options, p.raw); },
+    [](const Parsed& p) { return check_faults(p.options, p.raw); },
+    [](const Parsed& p) { return check_budgets(p.line, p.options); },
+    [](const Parsed& p) { return set_transport(p.line, p.options, p.raw); },
+    [](const Parsed& p) { return check_virtual_time(p.options, p.raw); },
+    [](const Parsed& p) { return set_failover(p.options, p.raw); },
+    [](const Parsed& p) { return check_names(p.line, p.options); },
+};
+
+/// Runs all checks up to the first fault, and returns it; empty if there is none.
+std::string check_together(const Parsed& parsed)
+{
+    const bool is_replay = !parsed.options.replay_path.empty();
+    for (const OptionCheck check :
+         is_replay ? std::span<const OptionCheck>(kOfReplay) : std::span<const OptionCheck>(kOfRun))
     {
-        return fault;
+        if (std::string fault = check(parsed); !fault.empty())
+        {
+            return fault;
+        }
     }
-    if (std::string fault = take_failover(options, raw); !fault.empty())
-    {
-        return fault;
-    }
-    return options.is_watched ? check_names(line, options) : "";
+    return {};
 }
 
 } // namespace
@@ -567,14 +579,16 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
     {
         return *code;
     }
-    if (const std::string fault = check_together(line, options, raw, form.commands); !fault.empty())
+    if (const std::string fault = check_together({line, options, raw, form}); !fault.empty())
     {
         return line.fail(fault, kExitUsage);
     }
-    if (const std::string fault = take_device_key(options, raw); !fault.empty())
+    if (const std::string fault = set_device_key(options, raw); !fault.empty())
     {
         return line.fail(fault);
     }
+    options.prediction = static_cast<Prediction>(
+        std::ranges::find(kPredictionNames, raw.prediction) - kPredictionNames.begin());
     options.thread.cpu = raw.cpu;
     options.follows_poses = !raw.ignores_poses;
     options.shows_refinement_state = !raw.hides_refinement_state;

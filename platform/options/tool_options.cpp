@@ -125,7 +125,7 @@ std::span<const ToolOption, kToolOptions> tool_options()
     return kOptions;
 }
 
-std::string take_tools(Options& options, const RawOptions& raw)
+std::string set_tools(Options& options, const RawOptions& raw)
 {
     std::string fault;
     const std::size_t said = count_tools(raw, raw.tool_count.value_or(kMaxTools), fault);

@@ -27,7 +27,7 @@ struct ToolOption
 /// Makes the tools of the options. Tool n takes the n-th value of each option, or else the value in
 /// the n-th table. Without a value, or with the word none, the tool has the default. Returns the
 /// fault; empty if there is none.
-[[nodiscard]] std::string take_tools(Options& options, const RawOptions& raw);
+[[nodiscard]] std::string set_tools(Options& options, const RawOptions& raw);
 
 /// Options of the tools, as tables of an option file.
 [[nodiscard]] std::string tool_tables(const RawOptions& raw);

@@ -75,7 +75,7 @@ bool ProgramScene::try_move(Key object, const Similarity& place)
     return true;
 }
 
-bool ProgramScene::try_feel(Key object, const Material& material)
+bool ProgramScene::try_set_material(Key object, const Material& material)
 {
     const std::lock_guard lock(mutex_);
     Slot* const slot = find(object);
@@ -84,7 +84,7 @@ bool ProgramScene::try_feel(Key object, const Material& material)
         return false;
     }
     slot->spec.material = material;
-    slot->owes_feel = true;
+    slot->owes_material = true;
     queue(object.number);
     return true;
 }
@@ -154,7 +154,7 @@ bool ProgramScene::try_pass_on(std::uint32_t number, MonotonicTime now)
     Slot& slot = slots_[number];
     if (slot.is_told && (!slot.is_resident || slot.told_generation != slot.generation))
     {
-        if (!mailbox_->try_go(number))
+        if (!mailbox_->try_remove(number))
         {
             return false;
         }
@@ -166,28 +166,28 @@ bool ProgramScene::try_pass_on(std::uint32_t number, MonotonicTime now)
     }
     if (!slot.is_told)
     {
-        if (!mailbox_->try_come(number, slot.generation, slot.spec, slot.pose, now))
+        if (!mailbox_->try_add(number, slot.generation, slot.spec, slot.pose, now))
         {
             return false;
         }
         slot.is_told = true;
         slot.told_generation = slot.generation;
-        slot.owes_feel = false; // An added object has its newest material and pose.
+        slot.owes_material = false; // An added object has its newest material and pose.
         slot.owes_pose = false;
-        mailbox_->hear(number, kAlways);
+        mailbox_->note_heard(number, kAlways);
     }
-    if (slot.owes_feel)
+    if (slot.owes_material)
     {
-        if (!mailbox_->try_feel(number, slot.spec.material))
+        if (!mailbox_->try_set_material(number, slot.spec.material))
         {
             return false;
         }
-        slot.owes_feel = false;
+        slot.owes_material = false;
     }
     if (slot.owes_pose)
     {
         mailbox_->put(number, slot.pose, now);
-        mailbox_->hear(number, kAlways);
+        mailbox_->note_heard(number, kAlways);
         slot.owes_pose = false;
     }
     return true;

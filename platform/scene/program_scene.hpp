@@ -46,7 +46,7 @@ public:
     [[nodiscard]] std::optional<Key> try_add(const ObjectSpec& spec, const Similarity& place);
     /// False, without effect, if the object was removed. The material must pass is_sound().
     [[nodiscard]] bool try_move(Key object, const Similarity& place);
-    [[nodiscard]] bool try_feel(Key object, const Material& material);
+    [[nodiscard]] bool try_set_material(Key object, const Material& material);
     [[nodiscard]] bool try_remove(Key object);
     /// Pose that the program gave the object last; none if it was removed.
     [[nodiscard]] std::optional<Similarity> place_of(Key object) const;
@@ -66,7 +66,7 @@ private:
         bool is_resident{false};     ///< True if the program wants an object there.
         bool is_told{false};         ///< True if the mailbox has one.
         std::uint32_t told_generation{0};
-        bool owes_feel{false};
+        bool owes_material{false};
         bool owes_pose{false};
         bool is_queued{false}; ///< True if the number is in untold_.
     };

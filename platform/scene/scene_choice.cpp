@@ -4,7 +4,7 @@
 
 #include "platform/choices/messages.hpp"
 #include "platform/scene/object_pose.hpp"
-#include "platform/scene/scene_room.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/content_hash.hpp"
@@ -58,7 +58,7 @@ void take_objects(Options& options, ShownScene& scene, const dds::Catalogue& cat
             options.objects.push_back(
                 {.model = static_cast<std::size_t>(offer - offers.begin()),
                  .place = to_similarity(shown.pose),
-                 .material = options.scene_materials.felt(shown.name, shown.material),
+                 .material = options.scene_materials.material_for(shown.name, shown.material),
                  .name = shown.name});
             scene.objects.push_back({scene.server_epoch, number});
         }
@@ -146,7 +146,7 @@ std::optional<Refusal> take_scene_file(Options& options)
     for (PlacedObject& object : placed.objects)
     {
         object.model += before;
-        object.material = options.scene_materials.felt(object.name, object.material);
+        object.material = options.scene_materials.material_for(object.name, object.material);
         options.objects.push_back(std::move(object));
     }
     if (std::string fault = options.scene_materials.missing(names_of(options)); !fault.empty())

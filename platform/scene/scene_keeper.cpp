@@ -66,7 +66,7 @@ void SceneKeeper::connect(SceneMailbox& mailbox, MonotonicTime now, NameSink nam
         if (const auto object = objects.find(name.number); object != objects.end())
         {
             move(place, object->second, now);
-            feel(place, object->second.shown);
+            change_material(place, object->second.shown);
         }
     }
 }
@@ -85,7 +85,7 @@ void SceneKeeper::step(MonotonicTime now)
                   { take_news(news, object, now); });
     pass_on(now);
     offer_left_out(now);
-    hear(now);
+    note_heard(now);
 }
 
 std::optional<ServerObject> SceneKeeper::shown_as(std::uint32_t object) const
@@ -103,7 +103,7 @@ void SceneKeeper::follow_scene_server()
     }
     while (!places_.empty())
     {
-        leave(places_.begin()->second);
+        remove_object(places_.begin()->second);
     }
     passed_over_.clear();
     left_out_.clear();
@@ -142,7 +142,7 @@ void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, 
     {
         if (!scene_.empty() && bound != places_.end())
         {
-            feel(bound->second, object.shown);
+            change_material(bound->second, object.shown);
         }
         return;
     }
@@ -171,7 +171,7 @@ void SceneKeeper::take_news(dds::SceneNews news, const dds::SeenObject& object, 
     left_out_.erase({name, object.generation});
     if (bound != places_.end())
     {
-        leave(bound->second);
+        remove_object(bound->second);
     }
 }
 
@@ -244,7 +244,7 @@ void SceneKeeper::bind(std::uint32_t place, const dds::SeenObject& object, Monot
     {
         free_.erase(place);
         slot.spec = {ModelId{static_cast<std::uint32_t>(*model_of(object.shown.model))},
-                     felt(name, object.shown)};
+                     material_for(name, object.shown)};
         slot.is_resident = true;
         slot.name = object.shown.name;
         untold_.push_back(place);
@@ -274,27 +274,27 @@ void SceneKeeper::move(std::uint32_t place, const dds::SeenObject& object, Monot
 
 /// Changes the material of our object. If several changes arrive while the queue is full, only the
 /// newest is sent.
-void SceneKeeper::feel(std::uint32_t place, const ShownObject& shown)
+void SceneKeeper::change_material(std::uint32_t place, const ShownObject& shown)
 {
     Slot& slot = slots_[place];
-    const Material material = felt(*slot.bound, shown);
+    const Material material = material_for(*slot.bound, shown);
     if (material == slot.spec.material)
     {
         return;
     }
     slot.spec.material = material;
-    if (slot.is_told && !slot.owes_feel)
+    if (slot.is_told && !slot.owes_material)
     {
-        slot.owes_feel = true;
+        slot.owes_material = true;
         untold_.push_back(place);
     }
 }
 
 /// Material for the frame: the one of --material or else the server's, limited by limited(). Logs
 /// the first limit of each object.
-Material SceneKeeper::felt(const ServerObject& object, const ShownObject& shown)
+Material SceneKeeper::material_for(const ServerObject& object, const ShownObject& shown)
 {
-    const Material& wanted = materials_.felt(shown.name, shown.material);
+    const Material& wanted = materials_.material_for(shown.name, shown.material);
     const Material material = limited(wanted, parts_.tools);
     if (material != wanted)
     {
@@ -308,7 +308,7 @@ Material SceneKeeper::felt(const ServerObject& object, const ShownObject& shown)
     return material;
 }
 
-void SceneKeeper::leave(std::uint32_t place)
+void SceneKeeper::remove_object(std::uint32_t place)
 {
     unbind(place);
     slots_[place].is_resident = false;
@@ -324,7 +324,7 @@ void SceneKeeper::pass_on(MonotonicTime now)
         Slot& slot = slots_[place];
         if (slot.is_resident && !slot.is_told)
         {
-            if (!mailbox_->try_come(place, slot.generation + 1, slot.spec, slot.pose, now))
+            if (!mailbox_->try_add(place, slot.generation + 1, slot.spec, slot.pose, now))
             {
                 return;
             }
@@ -334,24 +334,24 @@ void SceneKeeper::pass_on(MonotonicTime now)
                 names_(place, slot.generation, slot.name);
             }
             ++news_.came;
-            slot.owes_feel = false; // An added object has its newest material.
+            slot.owes_material = false; // An added object has its newest material.
         }
         else if (!slot.is_resident && slot.is_told)
         {
-            if (!mailbox_->try_go(place))
+            if (!mailbox_->try_remove(place))
             {
                 return;
             }
             ++news_.went;
         }
-        else if (slot.is_resident && slot.owes_feel)
+        else if (slot.is_resident && slot.owes_material)
         {
-            if (!mailbox_->try_feel(place, slot.spec.material))
+            if (!mailbox_->try_set_material(place, slot.spec.material))
             {
                 return;
             }
             ++news_.feels;
-            slot.owes_feel = false;
+            slot.owes_material = false;
         }
         slot.is_told = slot.is_resident;
         untold_.pop_front();
@@ -378,7 +378,7 @@ void SceneKeeper::offer_left_out(MonotonicTime now)
 }
 
 /// Notes which servers were heard, and adds their objects' new pose counts.
-void SceneKeeper::hear(MonotonicTime now)
+void SceneKeeper::note_heard(MonotonicTime now)
 {
     for (const std::uint64_t epoch : servers_)
     {
@@ -393,7 +393,7 @@ void SceneKeeper::hear(MonotonicTime now)
             Slot& slot = slots_[at->second];
             const std::size_t model = slot.spec.model.value;
             heard_[model] = now;
-            mailbox_->hear(at->second, now);
+            mailbox_->note_heard(at->second, now);
             const auto object = objects.find(at->first.number);
             if (object == objects.end())
             {

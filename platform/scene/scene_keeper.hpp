@@ -90,11 +90,11 @@ private:
         std::optional<ServerObject> bound;
         std::string name; ///< Name of an object added during the run; else empty.
         ObjectSpec spec;
-        ObjectPose pose;         ///< Newest pose.
-        dds::PoseCounts known;   ///< Pose counts of the server's object that `counts_` includes.
-        bool is_resident{false}; ///< True if the object is to be in the frame's scene.
-        bool is_told{false};     ///< True if it is there, or its addition is queued.
-        bool owes_feel{false};   ///< True if a change of its material is still to be queued.
+        ObjectPose pose;           ///< Newest pose.
+        dds::PoseCounts known;     ///< Pose counts of the server's object that `counts_` includes.
+        bool is_resident{false};   ///< True if the object is to be in the frame's scene.
+        bool is_told{false};       ///< True if it is there, or its addition is queued.
+        bool owes_material{false}; ///< True if a change of its material is still to be queued.
         std::uint32_t generation{0};
     };
 
@@ -107,11 +107,11 @@ private:
     void bind(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
     void unbind(std::uint32_t place);
     void move(std::uint32_t place, const dds::SeenObject& object, MonotonicTime now);
-    void feel(std::uint32_t place, const ShownObject& shown);
-    [[nodiscard]] Material felt(const ServerObject& object, const ShownObject& shown);
-    void leave(std::uint32_t place);
+    void change_material(std::uint32_t place, const ShownObject& shown);
+    [[nodiscard]] Material material_for(const ServerObject& object, const ShownObject& shown);
+    void remove_object(std::uint32_t place);
     void pass_on(MonotonicTime now);
-    void hear(MonotonicTime now);
+    void note_heard(MonotonicTime now);
     [[nodiscard]] ObjectPose pose_of(std::size_t model, const dds::SeenObject& object) const;
     [[nodiscard]] std::optional<std::size_t> model_of(const ContentHash& hash) const;
 

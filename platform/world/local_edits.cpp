@@ -129,7 +129,7 @@ void LocalEdits::step()
 /// Ends the edits of a model after a frame has refused one: those behind it would be refused, too.
 void LocalEdits::end_refused()
 {
-    if (const std::optional<ModelId> model = mailbox_.take_refused())
+    if (const std::optional<ModelId> model = mailbox_.take_refused_model())
     {
         log_.write(
             fmt::format("model {}: a frame has refused an edit; it gets no more", model->value));

@@ -751,7 +751,7 @@ Result<Done, Refusal> WorldCore::feel(const WorldObject& object, const MaterialO
     {
         return failure(*why);
     }
-    return scene_->try_feel({object.number_, object.generation_}, material.value())
+    return scene_->try_set_material({object.number_, object.generation_}, material.value())
                ? Result<Done, Refusal>(Done{})
                : failure("feel(): the object was removed");
 }

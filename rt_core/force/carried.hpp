@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/force/near_object.hpp"
+#include "rt_core/force/placed_surface.hpp"
 
 #include <cstdint>
 #include <span>

@@ -7,7 +7,7 @@
 #include "rt_core/force/carried.hpp"
 #include "rt_core/force/catch_up.hpp"
 #include "rt_core/force/force_shading.hpp"
-#include "rt_core/force/near_object.hpp"
+#include "rt_core/force/placed_surface.hpp"
 #include "rt_core/force/proxy_goal.hpp"
 #include "rt_core/force/vicinity.hpp"
 #include "rt_core/limits.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/geometry/shapes.hpp"
 #include "rt_core/math/safe_scale.hpp"
 #include "rt_core/math/triangle.hpp"
 
@@ -71,5 +72,25 @@ template <std::size_t N, typename Solve>
     result.distance_error *= inverse;
     return result;
 }
+
+/// Nearest points of a segment and a triangle; if they meet, a shared point.
+///
+/// |computed - true| <= 4e-16 x local length for any shapes, including slivers and points. The
+/// local length is the longest of the edges and of the distances between corners. The points are
+/// rounded to doubles in addition. Coordinates up to 1e300; those below 1e-85 of the largest may
+/// count as 0. About 0.9 us for separate shapes; 1 to 3 us if they touch or many features are
+/// equally near.
+[[nodiscard]] ClosestPoints closest_points(const Segment& segment,
+                                           const Triangle& triangle) noexcept TACTUS_NONBLOCKING;
+
+/// Nearest points of two triangles, of which `first` is the shape; if they meet, a shared point.
+/// Error law and range are those of a segment and a triangle. About 1.4 us for separate ones; 3 to
+/// 7 us if they touch or lie in one plane.
+[[nodiscard]] ClosestPoints closest_points(const Triangle& first,
+                                           const Triangle& second) noexcept TACTUS_NONBLOCKING;
+
+/// closest_points() with the result of meet() given; the same to the bit.
+[[nodiscard]] ClosestPoints closest_points(const Triangle& first, const Triangle& second,
+                                           bool do_meet) noexcept TACTUS_NONBLOCKING;
 
 } // namespace tactus

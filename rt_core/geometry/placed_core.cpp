@@ -5,7 +5,7 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/box_triangle.hpp"
 #include "rt_core/geometry/closest_features.hpp"
-#include "rt_core/geometry/segment_triangle.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/math/rounding.hpp"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include "rt_core/geometry/shared_features.hpp"
 
 #include "rt_core/geometry/boundary_distance.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/face_filter.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/math/kernel_error.hpp"
 
 #include <array>

@@ -3,8 +3,8 @@
 #include "rt_core/query/face_decision.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/crossing.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/contact_set.hpp"

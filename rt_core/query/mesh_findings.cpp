@@ -3,7 +3,7 @@
 #include "rt_core/query/mesh_findings.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/surface_query.hpp"

@@ -92,7 +92,7 @@ ForceSteps force_steps(const Scene& scene, const BlendCase& test_case, bool blen
             pose.stamp_ns = time_of(sent).ns;
             blends ? mailbox.put(0, pose, time_of(frame)) : rig.place_object(pose);
         }
-        mailbox.hear(0, time_of(frame));
+        mailbox.note_heard(0, time_of(frame));
         for (const SceneChange& change : mailbox.refresh(time_of(frame)))
         {
             rig.place_object(change.pose);
@@ -156,7 +156,7 @@ void run_queue_case(const CaseContext& context, const QueueCase& test_case)
         {
             for (std::uint32_t i = 0; i < test_case.objects && frame % 20 == 0; ++i)
             {
-                mailbox.hear(i, time_of(frame));
+                mailbox.note_heard(i, time_of(frame));
             }
         };
         for (std::uint32_t i = 0; i < test_case.objects; ++i)

@@ -3,8 +3,7 @@
 #include "tests/shared/kernel_trial.hpp"
 
 #include "rt_core/geometry/box_triangle.hpp"
-#include "rt_core/geometry/segment_triangle.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 #include "tests/shared/round_triangle.hpp"
 #include "tests/shared/shape_oracle.hpp"
 

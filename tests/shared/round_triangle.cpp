@@ -3,7 +3,7 @@
 #include "tests/shared/round_triangle.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/geometry/segment_triangle.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 
 #include <cmath>
 

@@ -179,7 +179,7 @@ void Catalogue::refresh()
                 refuse(Refused::model_name);
             }
         });
-    look_at_disputed();
+    remove_gone_offers();
 }
 
 /// Handles the end of an offer in DDS. If its server left, the offer is removed. A server that is
@@ -209,7 +209,7 @@ void Catalogue::dispute(std::uint32_t model, std::uint64_t server_epoch)
 }
 
 /// Removes each disputed offer whose server, or its writer, is gone. Checks every 50 ms.
-void Catalogue::look_at_disputed()
+void Catalogue::remove_gone_offers()
 {
     constexpr auto kEvery = std::chrono::milliseconds(50);
     const auto now = std::chrono::steady_clock::now();

@@ -122,7 +122,7 @@ private:
     void remove(const Key& key);
     void on_end(std::uint32_t model, std::uint64_t server_epoch, std::uint64_t writer);
     void dispute(std::uint32_t model, std::uint64_t server_epoch);
-    void look_at_disputed();
+    void remove_gone_offers();
 
     Participants* participants_;
     Endpoint reader_;

@@ -151,7 +151,7 @@ Result<ServedModel, Refusal> DdsClient::find(const ModelSelector& selector,
     {
         return models.error();
     }
-    if (const auto refusal = bring_bases(models.value(), timeout, go_on))
+    if (const auto refusal = fetch_base_meshes(models.value(), timeout, go_on))
     {
         return *refusal;
     }

@@ -35,9 +35,9 @@ public:
 
     /// Waits until all these models are published and their verified headers have arrived, each
     /// from the first of its servers that answers. Returns the models in the order of the
-    /// selectors, without base meshes (bring_bases()). Refused after `timeout`, if `go_on` (called
-    /// every few milliseconds) returns false, or if for a second every server of a model sends a
-    /// wrong header. The client must outlive the links.
+    /// selectors, without base meshes (fetch_base_meshes()). Refused after `timeout`, if `go_on`
+    /// (called every few milliseconds) returns false, or if for a second every server of a model
+    /// sends a wrong header. The client must outlive the links.
     [[nodiscard]] Result<std::vector<ServedModel>, Refusal>
     find_headers(std::span<const ModelSelector> selectors, std::chrono::milliseconds timeout,
                  const std::function<bool()>& go_on = {});

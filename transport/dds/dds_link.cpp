@@ -32,7 +32,7 @@ DdsLink::DdsLink(PieceExchange& exchange, Catalogue& catalogue, const Catalogue:
     : exchange_(exchange), catalogue_(catalogue), offer_(offer), log_(std::move(log))
 {
     exchange.add(*this);
-    exchange.meet(offer.server_epoch);
+    exchange.announce_to(offer.server_epoch);
 }
 
 void DdsLink::request(std::span<const ContentKey> keys, std::uint32_t generation)
@@ -259,7 +259,7 @@ void DdsLink::take_over(const Catalogue::Offer& offer)
     const std::string name = offer_.name;
     offer_ = offer;
     offer_.name = name;
-    exchange_.meet(offer.server_epoch);
+    exchange_.announce_to(offer.server_epoch);
 }
 
 void DdsLink::follow_server()

@@ -25,7 +25,7 @@ namespace
 /// Interval of announce(), which also reaches controllers that took a stalled server for gone.
 constexpr auto kAnnouncement = std::chrono::seconds(1);
 constexpr auto kLookForGone = std::chrono::milliseconds(50);
-/// Number of calls of look_for_gone() in which each controller is checked once.
+/// Number of calls of remove_gone_controllers() in which each controller is checked once.
 constexpr std::size_t kLooks = 20;
 /// Maximum number of controllers; each has up to four DDS writers, about 400 KB.
 constexpr std::size_t kMaxClients = 1'024;
@@ -37,7 +37,7 @@ constexpr std::size_t kMaxJoining = 2;
 constexpr auto kJoiningMax = std::chrono::seconds(5);
 constexpr auto kJoiningMaxBeforeOthers = std::chrono::seconds(1);
 /// Interval at which an admission is repeated, since the controller's reader may have missed it.
-constexpr auto kLetInAgain = std::chrono::milliseconds(100);
+constexpr auto kAdmitAgain = std::chrono::milliseconds(100);
 /// Maximum number of log lines a second about controllers that arrive or leave.
 constexpr std::uint32_t kVisitLines = 40;
 /// Time limits for requests and for pieces in one step, so that poses go out every 10 ms under any
@@ -142,7 +142,7 @@ void DdsServer::step()
     if (now - last_looked_ >= kLookForGone)
     {
         last_looked_ = now;
-        look_for_gone();
+        remove_gone_controllers();
         static_cast<void>(std::ranges::find_if(clients_, [this](Client& client)
                                                // At most one controller a step.
                                                { return try_heal(client); }));
@@ -152,7 +152,7 @@ void DdsServer::step()
         last_forgot_ = now;
         forget();
     }
-    let_in();
+    admit_waiting();
     serve(now + kServingMax);
     if (Clock::now() - last_announced_ >= kAnnouncement)
     {
@@ -320,9 +320,9 @@ void DdsServer::on_request(const ControllerId& controller, const tactus_v5_Wante
         const bool is_new =
             client->joining == Joining::not_wanted || client->joining == Joining::done;
         client->joining = is_new ? Joining::waits : client->joining;
-        if (client->joining == Joining::under_way && Clock::now() - client->let_in > kLetInAgain)
+        if (client->joining == Joining::under_way && Clock::now() - client->admitted > kAdmitAgain)
         {
-            client->subscription.let_in(epoch_);
+            client->subscription.admit(epoch_);
         }
     }
     else
@@ -453,7 +453,7 @@ void DdsServer::on_end(const ControllerId& controller, std::uint64_t writer)
     }
 }
 
-void DdsServer::look_for_gone()
+void DdsServer::remove_gone_controllers()
 {
     std::vector<ControllerId> gone;
     const std::size_t turn_end = looked_at_ + clients_.size() / kLooks + 1;
@@ -549,7 +549,7 @@ void DdsServer::serve(Clock::time_point end)
 
 /// Admits waiting controllers while fewer than kMaxJoining receive objects. Controllers of the
 /// processes with the fewest such receivers go first, then those with the oldest admission.
-void DdsServer::let_in()
+void DdsServer::admit_waiting()
 {
     const auto now = Clock::now();
     const bool do_others_wait =
@@ -559,7 +559,7 @@ void DdsServer::let_in()
     std::vector<Client*> waiting;
     for (Client& client : clients_)
     {
-        if (client.joining == Joining::under_way && now - client.let_in > longest)
+        if (client.joining == Joining::under_way && now - client.admitted > longest)
         {
             client.joining = Joining::done;
         }
@@ -577,7 +577,7 @@ void DdsServer::let_in()
                              {
                                  const Process* process = client->process.get();
                                  return std::tuple(std::ranges::count(under_way, process),
-                                                   process->let_in, client->let_in);
+                                                   process->admitted, client->admitted);
                              });
     for (Client* client : waiting)
     {
@@ -585,10 +585,10 @@ void DdsServer::let_in()
         {
             break;
         }
-        if (client->subscription.let_in(epoch_))
+        if (client->subscription.admit(epoch_))
         {
             client->joining = Joining::under_way;
-            client->let_in = client->process->let_in = now;
+            client->admitted = client->process->admitted = now;
             under_way.push_back(client->process.get());
         }
     }

@@ -89,9 +89,9 @@ private:
     struct Process
     {
         std::string name;
-        std::uint64_t asked{0};     ///< Recently requested pieces; decays over about a second.
-        double got_bytes{0.0};      ///< Bytes recently sent to it; halved every 250 ms.
-        Clock::time_point let_in{}; ///< Time when one of its controllers was last admitted.
+        std::uint64_t asked{0};       ///< Recently requested pieces; decays over about a second.
+        double got_bytes{0.0};        ///< Bytes recently sent to it; halved every 250 ms.
+        Clock::time_point admitted{}; ///< Time when one of its controllers was last admitted.
     };
     struct Client
     {
@@ -99,12 +99,12 @@ private:
         std::shared_ptr<Process> process;
         double got_bytes{0.0}; ///< Bytes recently sent to it; halved every 250 ms.
         Joining joining{Joining::not_wanted};
-        Clock::time_point let_in{};
+        Clock::time_point admitted{};
         std::uint64_t writer{0}; ///< Handle of the last request's writer.
         std::uint64_t passed{0}; ///< Number of the last step() in which send_one() failed.
         Backoff motion_renewals{};
-        /// True if any program ended this controller's instance in DDS; look_for_gone() then
-        /// checks.
+        /// True if any program ended this controller's instance in DDS; remove_gone_controllers()
+        /// then checks.
         bool is_disputed{false};
     };
 
@@ -125,12 +125,12 @@ private:
     /// Removes controllers whose writer or participant is gone. DDS may not report such an end if
     /// an unknown participant also wrote in the controller's name. Checks all disputed controllers,
     /// and the others in turn.
-    void look_for_gone();
+    void remove_gone_controllers();
     void on_controller_gone(const ControllerId& controller);
     void forget();
     void serve(Clock::time_point end);
     [[nodiscard]] Client* next_to_serve();
-    void let_in();
+    void admit_waiting();
     [[nodiscard]] Client* find(const ControllerId& controller);
 
     Domain domain_; ///< First member, so that it is destroyed last.
@@ -146,7 +146,8 @@ private:
     std::unique_ptr<EditPublisher> edits_;     ///< Null if no model can be edited.
     std::vector<Client> clients_;
     std::vector<std::shared_ptr<Process>> processes_;
-    std::size_t looked_at_{0}; ///< First index into clients_ for the next look_for_gone().
+    std::size_t looked_at_{
+        0}; ///< First index into clients_ for the next remove_gone_controllers().
     std::uint64_t steps_{0};
     bool has_more_work_{false};
     Clock::time_point last_announced_{};

@@ -60,7 +60,7 @@ HeaderFetch::State HeaderFetch::step()
     if (open_ == 0 || now - asked_ >= kAgain)
     {
         asked_ = now;
-        ask();
+        request_missing();
     }
     return now - progress_ < kSilence ? State::under_way : State::silent;
 }
@@ -76,7 +76,7 @@ void HeaderFetch::receive(std::uint64_t server_epoch, ContentKey key,
 }
 
 /// Requests missing parts while the server is present.
-void HeaderFetch::ask()
+void HeaderFetch::request_missing()
 {
     if (!catalogue_.has_server(offer_.server_epoch))
     {

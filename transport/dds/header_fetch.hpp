@@ -47,7 +47,7 @@ private:
     using Clock = std::chrono::steady_clock;
     void receive(std::uint64_t server_epoch, ContentKey key,
                  std::span<const std::byte> bytes) override;
-    void ask();
+    void request_missing();
     State refuse(std::string objection);
     State check();
 

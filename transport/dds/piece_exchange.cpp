@@ -82,13 +82,13 @@ void PieceExchange::ask_for_objects(std::uint64_t server_epoch)
     }
 }
 
-bool PieceExchange::is_let_in(std::uint64_t server_epoch) const
+bool PieceExchange::is_admitted(std::uint64_t server_epoch) const
 {
     const auto server = std::ranges::find(servers_, server_epoch, &Server::epoch);
-    return server != servers_.end() && server->is_let_in;
+    return server != servers_.end() && server->is_admitted;
 }
 
-void PieceExchange::tell_objects_are_here(std::uint64_t server_epoch, bool hears_motion)
+void PieceExchange::report_objects_received(std::uint64_t server_epoch, bool hears_motion)
 {
     Server& server = server_of(server_epoch);
     const Objects objects = hears_motion ? Objects::are_here : Objects::hear_no_motion;
@@ -103,7 +103,7 @@ void PieceExchange::leave_objects(std::uint64_t server_epoch)
 {
     Server& server = server_of(server_epoch);
     server.objects = Objects::not_wanted;
-    server.is_let_in = false;
+    server.is_admitted = false;
 }
 
 void PieceExchange::step()
@@ -195,7 +195,7 @@ void PieceExchange::take_pieces()
             {
                 return;
             }
-            server->is_let_in = server->is_let_in || sample.lets_in;
+            server->is_admitted = server->is_admitted || sample.lets_in;
             if (!sample.lets_in)
             {
                 const std::span payload(sample.payload._buffer, sample.payload._length);

@@ -86,7 +86,7 @@ public:
     void remove(PieceReceiver& receiver) { std::erase(receivers_, &receiver); }
 
     /// Makes the server known, so that the next step() announces the controller to it.
-    void meet(std::uint64_t server_epoch) { static_cast<void>(server_of(server_epoch)); }
+    void announce_to(std::uint64_t server_epoch) { static_cast<void>(server_of(server_epoch)); }
 
     /// Queues requests for pieces of model number `model` on a server, highest priority first;
     /// step() sends them. Pieces of a newer generation are sent before waiting ones of older
@@ -94,14 +94,14 @@ public:
     void ask(std::uint64_t server_epoch, std::uint32_t model, std::span<const ContentKey> keys,
              std::uint32_t generation);
 
-    /// Requests the objects of a server. is_let_in() is true once the server has admitted the
+    /// Requests the objects of a server. is_admitted() is true once the server has admitted the
     /// controller, which may then read them.
     void ask_for_objects(std::uint64_t server_epoch);
-    [[nodiscard]] bool is_let_in(std::uint64_t server_epoch) const;
+    [[nodiscard]] bool is_admitted(std::uint64_t server_epoch) const;
     /// Reports to the server that the objects have arrived, so that it admits the next controller.
     /// `hears_motion` false requests a new writer of motion, since a forged packet can make readers
     /// ignore a writer.
-    void tell_objects_are_here(std::uint64_t server_epoch, bool hears_motion);
+    void report_objects_received(std::uint64_t server_epoch, bool hears_motion);
     /// Withdraws the request for objects. A later request needs a new admission.
     void leave_objects(std::uint64_t server_epoch);
 
@@ -131,7 +131,7 @@ private:
         std::uint64_t granted_sent{0}; ///< Value of `granted` last sent to the server.
         std::uint32_t write_offs{0};   ///< Number of write-offs since the last piece.
         bool awaits_pieces{false};     ///< True if pieces were requested since the last sample.
-        bool is_let_in{false};
+        bool is_admitted{false};
         Objects objects{Objects::not_wanted};
         Clock::time_point last_sent{};
         Clock::time_point last_progress{};

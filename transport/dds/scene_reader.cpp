@@ -89,7 +89,7 @@ void SceneReader::poll(std::span<const std::uint64_t> servers, const Take& take)
         }
         take_records(epoch, server, take);
         take_motion(epoch, server, take);
-        look_at_strangers(epoch, server, take);
+        check_strangers(epoch, server, take);
         if (!server.is_complete && Clock::now() - server.since > kCompleteMax)
         {
             server.is_complete = true; // The missing objects may never arrive.
@@ -97,8 +97,8 @@ void SceneReader::poll(std::span<const std::uint64_t> servers, const Take& take)
         if (server.is_complete)
         {
             drop_unconfirmed(server, take);
-            exchange_.tell_objects_are_here(epoch, server.objects.empty() ||
-                                                       Clock::now() - server.heard < kMotionLost);
+            exchange_.report_objects_received(epoch, server.objects.empty() ||
+                                                         Clock::now() - server.heard < kMotionLost);
         }
     }
 }
@@ -125,7 +125,7 @@ const std::map<std::uint32_t, SeenObject>& SceneReader::objects(std::uint64_t se
 void SceneReader::join(std::uint64_t epoch, Server& server)
 {
     exchange_.ask_for_objects(epoch);
-    if (!exchange_.is_let_in(epoch))
+    if (!exchange_.is_admitted(epoch))
     {
         return;
     }
@@ -276,7 +276,7 @@ void SceneReader::begin_with(Server& server, std::uint64_t writer)
 
 /// Records new motion, and logs if it was lost before. A packet with a much later sample number in
 /// a writer's name makes Cyclone drop the writer's other samples.
-void SceneReader::hear(std::uint64_t epoch, Server& server, std::uint64_t writer)
+void SceneReader::note_motion(std::uint64_t epoch, Server& server, std::uint64_t writer)
 {
     const auto now = Clock::now();
     const auto silent = std::chrono::duration_cast<std::chrono::milliseconds>(now - server.heard);
@@ -327,7 +327,7 @@ void SceneReader::take_motion(std::uint64_t epoch, Server& server, const Take& t
             if (is_news)
             {
                 server.motion_serial = motion.serial;
-                hear(epoch, server, info.publication_handle);
+                note_motion(epoch, server, info.publication_handle);
             }
             settle_disputed(server, motion.objects, take);
             server.is_complete = server.is_complete || server.known() >= motion.objects;
@@ -356,7 +356,7 @@ void SceneReader::settle_disputed(Server& server, std::uint32_t objects, const T
 }
 
 /// Adds strangers whose model is now served, and logs each other one once after kServedMax.
-void SceneReader::look_at_strangers(std::uint64_t epoch, Server& server, const Take& take)
+void SceneReader::check_strangers(std::uint64_t epoch, Server& server, const Take& take)
 {
     const auto now = Clock::now();
     const Catalogue& catalogue = exchange_.catalogue();

@@ -145,9 +145,9 @@ private:
     take_record(Server& server, const tactus_v5_ObjectRecord& record, const Take& take);
     void take_motion(std::uint64_t epoch, Server& server, const Take& take);
     static void begin_with(Server& server, std::uint64_t writer);
-    void hear(std::uint64_t epoch, Server& server, std::uint64_t writer);
+    void note_motion(std::uint64_t epoch, Server& server, std::uint64_t writer);
     static void settle_disputed(Server& server, std::uint32_t objects, const Take& take);
-    void look_at_strangers(std::uint64_t epoch, Server& server, const Take& take);
+    void check_strangers(std::uint64_t epoch, Server& server, const Take& take);
     static bool try_move(SeenObject& object, std::uint64_t serial, const tactus_v5_Placement& to);
     static void remove(Server& server, std::uint32_t number, const Take& take);
 

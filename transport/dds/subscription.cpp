@@ -81,7 +81,7 @@ bool Subscription::send_one(std::uint64_t server_epoch, std::span<const ModelPie
     return true;
 }
 
-bool Subscription::let_in(std::uint64_t server_epoch)
+bool Subscription::admit(std::uint64_t server_epoch)
 {
     std::vector<std::byte> nothing;
     return writers_.is_matched() && write(server_epoch, 0, true, nothing);

@@ -77,7 +77,7 @@ public:
                   PieceBuffers& room, RateLimitedLog& log);
     /// Tells the controller that it may read the objects. False if its reader is not present or the
     /// write fails.
-    bool let_in(std::uint64_t server_epoch);
+    bool admit(std::uint64_t server_epoch);
 
     [[nodiscard]] std::uint64_t pieces_sent() const noexcept { return pieces_sent_; }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }

@@ -125,7 +125,7 @@ double ScriptedOperator::reach_m() const noexcept
 Vec3 ScriptedOperator::next_world_m(const OperatorSense& sense) noexcept
 {
     ++frames_in_phase_;
-    feel(sense);
+    update_touch(sense);
     if (sense.frame >= schedule_.retreat_frame && phase_ != OperatorPhase::retreat)
     {
         enter(OperatorPhase::retreat);
@@ -330,7 +330,7 @@ void ScriptedOperator::enter(OperatorPhase phase) noexcept
     felt_s_ = 0.0;
 }
 
-void ScriptedOperator::feel(const OperatorSense& sense) noexcept
+void ScriptedOperator::update_touch(const OperatorSense& sense) noexcept
 {
     felt_s_ = slide_.is_touching(sense) ? felt_s_ + period_s_ : 0.0;
     if (phase_ == OperatorPhase::slide && !is_landing_sure_ && slide_.touched_s() >= kSureAfterS)

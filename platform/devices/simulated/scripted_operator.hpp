@@ -91,7 +91,7 @@ private:
 
     void enter(OperatorPhase phase) noexcept;
     void lose_contact() noexcept;
-    void feel(const OperatorSense& sense) noexcept;
+    void update_touch(const OperatorSense& sense) noexcept;
     [[nodiscard]] bool meets(const OperatorSense& sense, const Vec3& way) const noexcept;
     void land(const OperatorSense& sense, const Vec3& heading_hint) noexcept;
     void remember_place(const OperatorSense& sense) noexcept;

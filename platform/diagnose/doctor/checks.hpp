@@ -3,10 +3,15 @@
 #pragma once
 
 #include "platform/diagnose/doctor/machine_view.hpp"
+#include "platform/diagnose/doctor/system_files.hpp"
 
 #include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
 
-/// Checks of the machine. Each returns one finding.
+/// Checks of the machine. Each returns one finding, without name and effect: both are in the table
+/// of examine().
 namespace tactus::doctor
 {
 
@@ -34,6 +39,20 @@ inline constexpr std::int64_t kMostResolution_ns = 1'000;
 /// Default socket buffers of Cyclone DDS: 1 MiB to receive, 64 KiB to send.
 inline constexpr std::int64_t kReceiveBytes = 1024 * 1024;
 inline constexpr std::int64_t kSendBytes = 64 * 1024;
+
+/// Parts of a Cyclone DDS configuration that the doctor checks.
+struct DdsConfiguration
+{
+    std::vector<std::string> interfaces; ///< Names of the interfaces; empty: DDS chooses one.
+    std::string unreadable_file;         ///< First file that can't be read; empty: none.
+};
+
+/// Reads a value of CYCLONEDDS_URI: XML elements and file addresses, separated by commas. The
+/// function is no XML parser. Only <NetworkInterface name="..."> and the older
+/// <NetworkInterfaceAddress>...</NetworkInterfaceAddress> count; interfaces that are given by
+/// address are ignored.
+[[nodiscard]] DdsConfiguration read_dds_configuration(std::string_view uri,
+                                                      const SystemFiles& files);
 
 /// Checks that the configuration of DDS can be read.
 [[nodiscard]] Finding check_dds_configuration(const MachineView& view);

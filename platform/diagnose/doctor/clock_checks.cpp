@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
-#include <utility>
 
 namespace tactus::doctor
 {
@@ -47,22 +46,17 @@ std::string take_better_source(const SystemFiles& files, const std::string& curr
 
 Finding check_clock_source(const MachineView& view)
 {
-    Finding finding{"clock-source",
-                    Verdict::good,
-                    "",
-                    "The loop reads the clock several times in each frame. A read through the vDSO "
-                    "takes 20 ns; any other read is a system call, which frames must not make.",
-                    {}};
+    Finding finding{.verdict = Verdict::good};
     const auto source = view.files.text(kCurrentSource);
     const auto calls = view.measured.clock_calls;
     if (!calls && !source)
     {
-        return unreadable(std::move(finding), view.files, kCurrentSource);
+        return unreadable(view.files, kCurrentSource);
     }
     const bool by_call = calls ? *calls > 0 : std::ranges::count(kReadByCall, *source) > 0;
     if (!calls && !by_call && std::ranges::count(kReadInUserSpace, *source) == 0)
     {
-        return unreadable(std::move(finding), view.files, kCurrentSource);
+        return unreadable(view.files, kCurrentSource);
     }
     finding.found = fmt::format(
         "{}, {}", source ? shown(*source) : "unknown source",
@@ -80,12 +74,7 @@ Finding check_clock_source(const MachineView& view)
 
 Finding check_timer(const MachineView& view)
 {
-    Finding finding{"timer",
-                    Verdict::good,
-                    "",
-                    "Without high-resolution timers, a thread wakes only at the kernel's tick, "
-                    "every 1 to 10 ms. A period of 1 ms is then impossible.",
-                    {}};
+    Finding finding{.verdict = Verdict::good};
     const auto resolution_ns = view.measured.clock_resolution_ns;
     if (!resolution_ns || *resolution_ns <= 0)
     {
@@ -109,13 +98,8 @@ Finding check_timer(const MachineView& view)
 
 Finding check_float_control(const MachineView& view)
 {
-    Finding finding{"float-control",
-                    Verdict::good,
-                    "new threads keep denormals and round to nearest",
-                    "A library, for example one built with -ffast-math, changes the floating-point "
-                    "mode (FTZ, DAZ, rounding) of all threads. Results then have other bits, and "
-                    "bounds are no longer proven.",
-                    {}};
+    Finding finding{.verdict = Verdict::good,
+                    .found = "new threads keep denormals and round to nearest"};
     if (view.measured.float_control_is_default)
     {
         return finding;

@@ -16,14 +16,84 @@ namespace tactus::doctor
 namespace
 {
 
-using Check = Finding (*)(const MachineView&);
+/// One check of the machine.
+struct Check
+{
+    const char* name; ///< Lower-case words joined by '-'.
+    const char* why;  ///< Effect on the loop if the check finds a problem.
+    Finding (*run)(const MachineView&);
+};
 
-constexpr std::array<Check, 17> kChecks{
-    check_priority,      check_memory_lock, check_clock_source,      check_timer,
-    check_float_control, check_preemption,  check_throttling,        check_compaction,
-    check_isolation,     check_interrupts,  check_governor,          check_idle_states,
-    check_siblings,      check_huge_pages,  check_dds_configuration, check_dds_interface,
-    check_dds_buffers,
+/// All checks, in the order of display.
+constexpr Check kChecks[] = {
+    {"priority",
+     "Without SCHED_FIFO, the loop waits for other threads, for milliseconds. hrtc then runs only "
+     "with --allow-no-rt.",
+     check_priority},
+    {"memlock",
+     "A page that is not locked may have to be loaded during a frame. Memory that is mapped later "
+     "counts too, so no finite limit is enough.",
+     check_memory_lock},
+    {"clock-source",
+     "The loop reads the clock several times in each frame. A read through the vDSO takes 20 ns; "
+     "any other read is a system call, which frames must not make.",
+     check_clock_source},
+    {"timer",
+     "Without high-resolution timers, a thread wakes only at the kernel's tick, every 1 to 10 ms. "
+     "A period of 1 ms is then impossible.",
+     check_timer},
+    {"float-control",
+     "A library, for example one built with -ffast-math, changes the floating-point mode (FTZ, "
+     "DAZ, rounding) of all threads. Results then have other bits, and bounds are no longer "
+     "proven.",
+     check_float_control},
+    {"preemption",
+     "The loop waits while another thread is in a part of the kernel that can't be preempted. "
+     "PREEMPT_RT has few such parts and runs interrupts in threads.",
+     check_preemption},
+    {"rt-throttling",
+     "Real-time threads that use up their share are paused for the rest of the period, even "
+     "during a contact. Without the limit, a thread in an endless loop keeps its processor.",
+     check_throttling},
+    {"compaction",
+     "A thread that accesses a page during its move waits until the end of the move. This is a "
+     "page fault, although the memory of the loop is locked.",
+     check_compaction},
+    {"isolation",
+     "On an isolated processor, the caches of the loop stay warm, and other threads and the "
+     "kernel's housekeeping do not run.",
+     check_isolation},
+    {"interrupts",
+     "An interrupt on the loop's processor pauses the loop. A network card causes thousands of "
+     "interrupts a second.",
+     check_interrupts},
+    {"governor",
+     "The loop works for a small part of each period. Other governors take this for idle time and "
+     "lower the clock rate, so that frames take longer.",
+     check_governor},
+    {"idle-states",
+     "The processor sleeps between frames. Each wake-up from a deep C-state is late by the exit "
+     "latency of that state, and caches may be cold.",
+     check_idle_states},
+    {"smt",
+     "Two processors of one core share its execution units and caches. Work on the other "
+     "processor makes frames take longer, and the loop can't prevent this.",
+     check_siblings},
+    {"huge-pages",
+     "With 'always', the kernel also merges small pages in use, and an access waits for the "
+     "merge. hrtc requests huge pages where it needs them.",
+     check_huge_pages},
+    {"dds-configuration",
+     "Without CYCLONEDDS_URI, hrtc finds only models of this machine (interface lo, no "
+     "multicast). With CYCLONEDDS_URI, DDS uses that configuration unchanged.",
+     check_dds_configuration},
+    {"dds-interface",
+     "If the interface does not exist, is down or has no link, hrtc gets models only from files.",
+     check_dds_interface},
+    {"dds-buffers",
+     "A burst of chunks larger than the buffer of the socket is lost and sent again. Until then, "
+     "answers stay bounded. DDS requests 1 MiB for receiving and 64 KiB for sending.",
+     check_dds_buffers},
 };
 
 } // namespace
@@ -31,9 +101,11 @@ constexpr std::array<Check, 17> kChecks{
 std::vector<Finding> examine(const MachineView& view)
 {
     std::vector<Finding> findings;
-    for (const Check check : kChecks)
+    for (const Check& check : kChecks)
     {
-        findings.push_back(check(view));
+        Finding& finding = findings.emplace_back(check.run(view));
+        finding.name = check.name;
+        finding.why = check.why;
     }
     return findings;
 }

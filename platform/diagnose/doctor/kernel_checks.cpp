@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace tactus::doctor
 {
@@ -136,12 +135,7 @@ std::vector<std::string> move_interrupts(const SystemFiles& files, const Process
 
 Finding check_preemption(const MachineView& view)
 {
-    Finding finding{"preemption",
-                    Verdict::advice,
-                    "",
-                    "The loop waits while another thread is in a part of the kernel that can't be "
-                    "preempted. PREEMPT_RT has few such parts and runs interrupts in threads.",
-                    {}};
+    Finding finding{.verdict = Verdict::advice};
     const std::string version =
         view.files.text("/proc/version").value_or(view.measured.kernel_version);
     if (view.files.text("/sys/kernel/realtime") == "1" || has_word(version, "PREEMPT_RT"))
@@ -152,7 +146,7 @@ Finding check_preemption(const MachineView& view)
     }
     if (!version.starts_with("Linux") && view.measured.kernel_version.empty())
     {
-        return unreadable(std::move(finding), view.files, "/proc/version");
+        return unreadable(view.files, "/proc/version");
     }
     finding.found = fmt::format("the kernel has {}, not PREEMPT_RT", preemption_of(version));
     finding.remedy = {get_rt_kernel(view.measured.machine)};
@@ -172,13 +166,8 @@ Finding check_preemption(const MachineView& view)
 Finding check_throttling(const MachineView& view)
 {
     const std::string folder = "/proc/sys/kernel/";
-    Finding finding{
-        "rt-throttling",
-        Verdict::advice,
-        "",
-        "Real-time threads that use up their share are paused for the rest of the period, even "
-        "during a contact. Without the limit, a thread in an endless loop keeps its processor.",
-        {"sudo sysctl -w kernel.sched_rt_runtime_us=-1"}};
+    Finding finding{.verdict = Verdict::advice,
+                    .remedy = {"sudo sysctl -w kernel.sched_rt_runtime_us=-1"}};
     const auto read = [&](const char* name) -> std::optional<std::int64_t>
     {
         const auto text = view.files.text(folder + name);
@@ -188,11 +177,11 @@ Finding check_throttling(const MachineView& view)
     const auto period = read("sched_rt_period_us");
     if (!runtime || *runtime < -1)
     {
-        return unreadable(std::move(finding), view.files, folder + "sched_rt_runtime_us");
+        return unreadable(view.files, folder + "sched_rt_runtime_us");
     }
     if (!period || *period <= 0)
     {
-        return unreadable(std::move(finding), view.files, folder + "sched_rt_period_us");
+        return unreadable(view.files, folder + "sched_rt_period_us");
     }
     if (*runtime == -1 || *runtime >= *period)
     {
@@ -209,19 +198,16 @@ Finding check_throttling(const MachineView& view)
 Finding check_compaction(const MachineView& view)
 {
     const std::string file = "/proc/sys/vm/compact_unevictable_allowed";
-    Finding finding{"compaction",
-                    Verdict::advice,
-                    "the kernel may move locked memory to make room for large blocks",
-                    "A thread that accesses a page during its move waits until the end of the "
-                    "move. This is a page fault, although the memory of the loop is locked.",
-                    {"echo vm.compact_unevictable_allowed=0 | sudo tee "
-                     "/etc/sysctl.d/61-tactus.conf",
-                     "sudo sysctl --system"}};
+    Finding finding{.verdict = Verdict::advice,
+                    .found = "the kernel may move locked memory to make room for large blocks",
+                    .remedy = {"echo vm.compact_unevictable_allowed=0 | sudo tee "
+                               "/etc/sysctl.d/61-tactus.conf",
+                               "sudo sysctl --system"}};
     const auto text = view.files.text(file);
     const auto allowed = text ? parse_integer(*text) : std::nullopt;
     if (!allowed)
     {
-        return unreadable(std::move(finding), view.files, file);
+        return unreadable(view.files, file);
     }
     if (*allowed == 0)
     {
@@ -235,23 +221,18 @@ Finding check_compaction(const MachineView& view)
 Finding check_isolation(const MachineView& view)
 {
     const std::string folder = "/sys/devices/system/cpu/";
-    Finding finding{"isolation",
-                    Verdict::advice,
-                    "",
-                    "On an isolated processor, the caches of the loop stay warm, and other threads "
-                    "and the kernel's housekeeping do not run.",
-                    {}};
+    Finding finding{.verdict = Verdict::advice};
     const auto list = view.files.text(folder + "isolated");
     const auto isolated = list ? parse_processor_list(*list) : std::nullopt;
     if (!isolated)
     {
-        return unreadable(std::move(finding), view.files, folder + "isolated");
+        return unreadable(view.files, folder + "isolated");
     }
     const auto online = online_processors(view.files);
     const auto cpu = chosen_or_highest(view);
     if (!online || !cpu)
     {
-        return unreadable(std::move(finding), view.files, folder + "online");
+        return unreadable(view.files, folder + "online");
     }
 
     if (isolated->any() && !view.cpu)
@@ -286,16 +267,11 @@ Finding check_isolation(const MachineView& view)
 
 Finding check_interrupts(const MachineView& view)
 {
-    Finding finding{"interrupts",
-                    Verdict::advice,
-                    "",
-                    "An interrupt on the loop's processor pauses the loop. A network card causes "
-                    "thousands of interrupts a second.",
-                    {}};
+    Finding finding{.verdict = Verdict::advice};
     const auto online = online_processors(view.files);
     if (!online)
     {
-        return unreadable(std::move(finding), view.files, "/sys/devices/system/cpu/online");
+        return unreadable(view.files, "/sys/devices/system/cpu/online");
     }
     if (!view.cpu)
     {
@@ -307,7 +283,7 @@ Finding check_interrupts(const MachineView& view)
     const auto by_default = text ? parse_processor_mask(*text) : std::nullopt;
     if (!by_default || by_default->none())
     {
-        return unreadable(std::move(finding), view.files, kDefaultAffinity);
+        return unreadable(view.files, kDefaultAffinity);
     }
 
     const InterruptCount count = count_interrupts(view.files, *view.cpu);

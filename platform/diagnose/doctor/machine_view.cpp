@@ -34,9 +34,9 @@ std::string processors_in_words(const ProcessorSet& set)
     return fmt::format("processor{} {}", set.count() == 1 ? "" : "s", processor_list(set));
 }
 
-Finding unreadable(Finding finding, const SystemFiles& files, const std::string& path)
+Finding unreadable(const SystemFiles& files, const std::string& path)
 {
-    finding.verdict = Verdict::unknown;
+    Finding finding{.verdict = Verdict::unknown};
     const auto text = files.text(path);
     if (!files.is_there(path))
     {

@@ -32,14 +32,15 @@ inline constexpr std::array<const char*, 4> kVerdictNames{"good", "advice", "cri
     return kVerdictNames[static_cast<std::size_t>(verdict)];
 }
 
-/// Result of one check. All texts are printable ASCII without line ends.
+/// Result of one check. All texts are printable ASCII without line ends. examine() adds the name
+/// and the effect from its table.
 struct Finding
 {
-    std::string name; ///< Name of the check: lower-case words joined by '-'.
+    std::string name{}; ///< Name of the check: lower-case words joined by '-'.
     Verdict verdict{Verdict::unknown};
-    std::string found;
-    std::string why;                 ///< Effect on the loop.
-    std::vector<std::string> remedy; ///< Shell commands, in order; empty if the verdict is good.
+    std::string found{};
+    std::string why{};                 ///< Effect on the loop.
+    std::vector<std::string> remedy{}; ///< Shell commands, in order; empty if the verdict is good.
     /// True if an option requests this check: a good finding is then shown in full, too.
     bool is_asked_for{false};
 };
@@ -66,8 +67,7 @@ struct MachineView
 [[nodiscard]] std::string processors_in_words(const ProcessorSet& set);
 
 /// Finding with the verdict unknown, because `path` can't be read or has invalid content.
-[[nodiscard]] Finding unreadable(Finding finding, const SystemFiles& files,
-                                 const std::string& path);
+[[nodiscard]] Finding unreadable(const SystemFiles& files, const std::string& path);
 
 /// Command that adds arguments to the kernel's line permanently, in Debian's way.
 [[nodiscard]] std::string add_to_kernel_line(const std::string& arguments);

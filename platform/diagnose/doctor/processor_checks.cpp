@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 namespace tactus::doctor
 {
@@ -82,16 +81,13 @@ std::optional<std::int64_t> wake_asked_for_us(const SystemFiles& files)
 Finding check_governor(const MachineView& view)
 {
     Finding finding{
-        "governor",
-        Verdict::advice,
-        "",
-        "The loop works for a small part of each period. Other governors take this for idle time "
-        "and lower the clock rate, so that frames take longer.",
-        {fmt::format("echo performance | sudo tee {}/cpufreq/scaling_governor", folders_of(view))}};
+        .verdict = Verdict::advice,
+        .remedy = {fmt::format("echo performance | sudo tee {}/cpufreq/scaling_governor",
+                               folders_of(view))}};
     const auto processors = loop_processors(view);
     if (!processors || !online_processors(view.files))
     {
-        return unreadable(std::move(finding), view.files, kOnline);
+        return unreadable(view.files, kOnline);
     }
     std::map<std::string, ProcessorSet> by_governor;
     for (std::size_t i = 0; i < processors->size(); ++i)
@@ -104,7 +100,7 @@ Finding check_governor(const MachineView& view)
         const std::string governor = view.files.text(path).value_or("");
         if (!is_name_of_governor(governor))
         {
-            return unreadable(std::move(finding), view.files, path);
+            return unreadable(view.files, path);
         }
         by_governor[governor].set(i);
     }
@@ -129,17 +125,11 @@ Finding check_governor(const MachineView& view)
 
 Finding check_idle_states(const MachineView& view)
 {
-
-    Finding finding{"idle-states",
-                    Verdict::advice,
-                    "",
-                    "The processor sleeps between frames. Each wake-up from a deep C-state is late "
-                    "by the exit latency of that state, and caches may be cold.",
-                    {}};
+    Finding finding{.verdict = Verdict::advice};
     const auto processors = loop_processors(view);
     if (!processors || !online_processors(view.files))
     {
-        return unreadable(std::move(finding), view.files, kOnline);
+        return unreadable(view.files, kOnline);
     }
     std::int64_t deepest_us = 0;
     for (std::size_t i = 0; i < processors->size(); ++i)
@@ -148,7 +138,7 @@ Finding check_idle_states(const MachineView& view)
         const auto wake_us = processors->test(i) ? deepest_wake_us(view.files, i, path) : 0;
         if (!wake_us)
         {
-            return unreadable(std::move(finding), view.files, path);
+            return unreadable(view.files, path);
         }
         deepest_us = std::max(deepest_us, *wake_us);
     }
@@ -174,19 +164,14 @@ Finding check_idle_states(const MachineView& view)
 
 Finding check_siblings(const MachineView& view)
 {
-    Finding finding{"smt",
-                    Verdict::advice,
-                    "",
-                    "Two processors of one core share its execution units and caches. Work on the "
-                    "other processor makes frames take longer, and the loop can't prevent this.",
-                    {}};
+    Finding finding{.verdict = Verdict::advice};
     if (!view.cpu)
     {
         const std::string path = "/sys/devices/system/cpu/smt/active";
         const auto active = view.files.text(path);
         if (active != "0" && active != "1")
         {
-            return unreadable(std::move(finding), view.files, path);
+            return unreadable(view.files, path);
         }
         finding.verdict = active == "0" ? Verdict::good : Verdict::advice;
         finding.found = active == "0" ? "no two processors share a core" : "processors share cores";
@@ -202,7 +187,7 @@ Finding check_siblings(const MachineView& view)
     const auto siblings = list ? parse_processor_list(*list) : std::nullopt;
     if (!siblings || !siblings->test(own))
     {
-        return unreadable(std::move(finding), view.files, path);
+        return unreadable(view.files, path);
     }
     const ProcessorSet others = *siblings & ~set_of(*view.cpu);
     finding.verdict = others.none() ? Verdict::good : Verdict::advice;

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <sstream>
-#include <utility>
 
 namespace tactus::doctor
 {
@@ -90,13 +89,7 @@ std::vector<std::string> give_share(const SystemFiles& files)
 Finding check_priority(const MachineView& view)
 {
     const Measured& measured = view.measured;
-
-    Finding finding{"priority",
-                    Verdict::good,
-                    "",
-                    "Without SCHED_FIFO, the loop waits for other threads, for milliseconds. hrtc "
-                    "then runs only with --allow-no-rt.",
-                    {}};
+    Finding finding{.verdict = Verdict::good};
     const std::string capability = capability_in_words(view.files, kCapSysNice);
     finding.found = fmt::format(
         "SCHED_FIFO {} {}; rtprio limit {}, CAP_SYS_NICE {}", Measured::kFifoPriority,
@@ -118,12 +111,7 @@ Finding check_priority(const MachineView& view)
 Finding check_memory_lock(const MachineView& view)
 {
     const Measured& measured = view.measured;
-    Finding finding{"memlock",
-                    Verdict::good,
-                    "",
-                    "A page that is not locked may have to be loaded during a frame. Memory that "
-                    "is mapped later counts too, so no finite limit is enough.",
-                    {}};
+    Finding finding{.verdict = Verdict::good};
     finding.found = fmt::format("locking all memory {}; memlock limit {}, CAP_IPC_LOCK {}",
                                 measured.memory_lock_granted ? "granted" : "refused",
                                 measured.memlock_limit && *measured.memlock_limit != kUnlimited
@@ -141,12 +129,7 @@ Finding check_memory_lock(const MachineView& view)
 Finding check_huge_pages(const MachineView& view)
 {
     const std::string path = "/sys/kernel/mm/transparent_hugepage/enabled";
-    Finding finding{"huge-pages",
-                    Verdict::good,
-                    "",
-                    "With 'always', the kernel also merges small pages in use, and an access waits "
-                    "for the merge. hrtc requests huge pages where it needs them.",
-                    {}};
+    Finding finding{.verdict = Verdict::good};
     const auto choices = view.files.text(path);
     if (!choices && view.files.is_folder("/sys/kernel/mm") && !view.files.is_there(path))
     {
@@ -162,7 +145,7 @@ Finding check_huge_pages(const MachineView& view)
     }
     if (finding.found.empty())
     {
-        return unreadable(std::move(finding), view.files, path);
+        return unreadable(view.files, path);
     }
     if (finding.found.ends_with("always"))
     {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/doctor/dds_configuration.hpp"
+#include "platform/diagnose/doctor/checks.hpp"
 #include "tests/unit/doctor/made_up_machine.hpp"
 
 #include <gtest/gtest.h>

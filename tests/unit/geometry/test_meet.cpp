@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/geometry/box_triangle.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/crossing.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
 #include "tests/shared/shape_scenes.hpp"
 #include "tests/unit/geometry/grid.hpp"
 #include "tests/unit/geometry/integer_oracle.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/crossing.hpp"
 #include "rt_core/geometry/shared_features.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/unit/geometry/same_points.hpp"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/geometry/box_triangle.hpp"
-#include "rt_core/geometry/segment_triangle.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
+#include "rt_core/geometry/closest_points.hpp"
 #include "tests/shared/round_triangle.hpp"
 #include "tests/shared/shape_scenes.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/keys/rights.hpp"
+#include "host_tools/keys/site.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/security.hpp"

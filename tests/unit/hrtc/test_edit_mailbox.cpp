@@ -61,7 +61,7 @@ TEST(EditMailbox, is_empty_at_first)
     EXPECT_TRUE(sut.edits().empty());
     sut.done({});
     EXPECT_TRUE(sut.edits().empty());
-    EXPECT_FALSE(sut.take_refused());
+    EXPECT_FALSE(sut.take_refused_model());
 }
 
 TEST(EditMailbox, refuses_an_edit_too_many_and_has_room_once_a_frame_is_done)
@@ -95,7 +95,7 @@ TEST(EditMailbox, edits_that_are_not_done_are_shown_again)
     expect_is(sut.edits()[0], 5);
     sut.done(models_after(6));
     EXPECT_TRUE(sut.edits().empty());
-    EXPECT_FALSE(sut.take_refused());
+    EXPECT_FALSE(sut.take_refused_model());
 }
 
 TEST(EditMailbox, tells_once_the_model_whose_edit_a_frame_refused)
@@ -107,11 +107,11 @@ TEST(EditMailbox, tells_once_the_model_whose_edit_a_frame_refused)
     std::array<ModelOutput, 7> models = models_after(5);
     models[5].edit_revision = 4;
     sut.done(models);
-    EXPECT_EQ(sut.take_refused(), ModelId{5});
-    EXPECT_FALSE(sut.take_refused());
+    EXPECT_EQ(sut.take_refused_model(), ModelId{5});
+    EXPECT_FALSE(sut.take_refused_model());
     ASSERT_EQ(sut.edits().size(), 1U); // The frame does not have the edit's model.
     sut.done(std::span(models).first(3));
-    EXPECT_EQ(sut.take_refused(), ModelId{6});
+    EXPECT_EQ(sut.take_refused_model(), ModelId{6});
 }
 
 TEST(EditMailbox, holds_the_largest_edit)
@@ -145,7 +145,7 @@ TEST(EditMailbox, passes_all_edits_in_order_between_two_threads)
         sut.done(models_after(taken));
     }
     transport.join();
-    EXPECT_FALSE(sut.take_refused());
+    EXPECT_FALSE(sut.take_refused_model());
     EXPECT_EQ(sut.taken(), kAll);
     EXPECT_TRUE(sut.edits().empty());
 }

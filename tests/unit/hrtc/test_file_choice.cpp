@@ -54,8 +54,8 @@ Taken take(const Given& given)
     raw.models = given.models;
     raw.of_tools[0] = given.tools;
     raw.transport = given.transport;
-    EXPECT_EQ(take_tools(options, raw), "");
-    const std::string fault = take_files(options, raw, subcommand_names());
+    EXPECT_EQ(set_tools(options, raw), "");
+    const std::string fault = assign_files(options, raw, subcommand_names());
     return {fault, raw.models, options.scene, raw.transport.value_or("")};
 }
 

@@ -266,7 +266,7 @@ TEST_F(FollowedScene, feels_no_more_than_the_device_allows_and_tells_it_once)
 
 TEST_F(FollowedScene, feels_as_the_controller_was_told_whatever_the_server_says)
 {
-    ASSERT_EQ(materials.take(std::vector<std::string>{"cup:250,0.5"}), "");
+    ASSERT_EQ(materials.parse(std::vector<std::string>{"cup:250,0.5"}), "");
     const std::uint32_t cup = show(*server, "cup", 0.0);
     const std::uint32_t pot = show(*server, "pot", 1.0);
     ASSERT_NO_FATAL_FAILURE(start(true, 4));

@@ -67,7 +67,7 @@ private:
         {
             if (is_supervised)
             {
-                static_cast<void>(supervisor_.look()); // A running loop is never braked.
+                static_cast<void>(supervisor_.check()); // A running loop is never braked.
             }
             if (frame == kSettled)
             {
@@ -86,7 +86,7 @@ private:
         {
             if (is_supervised && clock.now() >= wake + kLate)
             {
-                wake = supervisor_.look();
+                wake = supervisor_.check();
             }
             felt_.push_back({clock.now() - beat, rig_.device().felt_n().norm()});
         }
@@ -205,15 +205,15 @@ TEST(Supervisor, brakes_at_once_when_the_fade_should_be_over)
     clock.advance(kPeriod * 3);
     for (int i = 0; i < 50; ++i)
     {
-        EXPECT_EQ(sut.look(), clock.now() + kPeriod);
+        EXPECT_EQ(sut.check(), clock.now() + kPeriod);
         EXPECT_EQ(deaf.soft_brakes, 1);
         EXPECT_EQ(deaf.brakes, 0);
         clock.advance(kPeriod);
     }
-    static_cast<void>(sut.look());
+    static_cast<void>(sut.check());
     EXPECT_EQ(deaf.brakes, 1);
     heartbeat.beat(clock.now()); // The loop is back.
-    static_cast<void>(sut.look());
+    static_cast<void>(sut.check());
     EXPECT_EQ(deaf.brakes, 1);
 }
 
@@ -223,29 +223,29 @@ TEST(Supervisor, looks_when_the_silence_would_be_long_enough)
     Heartbeat heartbeat;
     Supervisor sut({rig.tools(), &heartbeat, &rig.clock(), nullptr, kPeriod});
     SimulatedClock& clock = rig.virtual_clock();
-    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3); // The loop has not begun.
+    EXPECT_EQ(sut.check(), clock.now() + kPeriod * 3); // The loop has not begun.
     clock.advance(milliseconds(100));
-    EXPECT_EQ(sut.look(), clock.now() + kPeriod * 3);
+    EXPECT_EQ(sut.check(), clock.now() + kPeriod * 3);
     EXPECT_EQ(sut.brakes(), 0U);
 
     heartbeat.beat(clock.now());
-    const MonotonicTime due = sut.look();
+    const MonotonicTime due = sut.check();
     EXPECT_EQ(due, clock.now() + kPeriod * 3);
     clock.advance_to(due - nanoseconds(1));
-    EXPECT_EQ(sut.look(), due);
+    EXPECT_EQ(sut.check(), due);
     EXPECT_EQ(sut.brakes(), 0U);
     clock.advance(nanoseconds(1));
-    EXPECT_EQ(sut.look(), due + kPeriod);
+    EXPECT_EQ(sut.check(), due + kPeriod);
     EXPECT_EQ(sut.brakes(), 1U);
 
     heartbeat.beat(clock.now()); // The loop is back, and hangs again.
     clock.advance(kPeriod * 3);
-    static_cast<void>(sut.look());
+    static_cast<void>(sut.check());
     EXPECT_EQ(sut.brakes(), 2U);
     heartbeat.beat(clock.now());
     heartbeat.rest(); // Regular end.
     clock.advance(kPeriod * 10);
-    static_cast<void>(sut.look());
+    static_cast<void>(sut.check());
     EXPECT_EQ(sut.brakes(), 2U);
 }
 
@@ -257,12 +257,12 @@ TEST(Supervisor, is_as_patient_as_it_is_told_and_more_so_where_the_kernel_promis
     SimulatedClock& clock = rig.virtual_clock();
     heartbeat.beat(clock.now());
     const MonotonicTime due = clock.now() + kPeriod * 10;
-    EXPECT_EQ(sut.look(), due);
+    EXPECT_EQ(sut.check(), due);
     clock.advance_to(due - nanoseconds(1));
-    EXPECT_EQ(sut.look(), due);
+    EXPECT_EQ(sut.check(), due);
     EXPECT_EQ(sut.brakes(), 0U);
     clock.advance_to(due);
-    static_cast<void>(sut.look());
+    static_cast<void>(sut.check());
     EXPECT_EQ(sut.brakes(), 1U);
 
     Machine machine;

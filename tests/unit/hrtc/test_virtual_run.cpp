@@ -272,7 +272,7 @@ private:
         while (wake_ <= end)
         {
             clock_.advance_to(wake_);
-            wake_ = supervisor_->look();
+            wake_ = supervisor_->check();
         }
         clock_.advance_to(end);
     }

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/devices/remote/info_fault.hpp"
 #include "platform/devices/remote/remote_device.hpp"
-#include "platform/devices/simulated/simulated_clock.hpp"
+#include "platform/devices/simulated/simulated_periodic_timer.hpp"
 
 #include <gtest/gtest.h>
 

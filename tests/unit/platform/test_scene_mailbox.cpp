@@ -74,7 +74,7 @@ TEST(SceneMailbox, counts_the_age_from_when_the_server_was_heard_on_its_own_cloc
     static_cast<void>(sut.refresh(kStart + kLimit + nanoseconds(1)));
     EXPECT_EQ(sut.uses()[0].old_frames, 1U);
     EXPECT_EQ(sut.uses()[0].age_max.ns, kLimit.ns + 1);
-    sut.hear(0, kStart + milliseconds(200));
+    sut.note_heard(0, kStart + milliseconds(200));
     static_cast<void>(sut.refresh(kStart + milliseconds(201)));
     EXPECT_EQ(sut.uses()[0].old_frames, 1U);
 }
@@ -87,7 +87,7 @@ TEST(SceneMailbox, tells_the_frame_of_a_silent_server_before_the_limit_and_of_on
     ASSERT_EQ(sut.refresh(kStart).size(), 1U);
     for (int ms = 20; ms <= 200; ms += 20) // The object rests, and its server is heard: no changes.
     {
-        sut.hear(0, kStart + milliseconds(ms));
+        sut.note_heard(0, kStart + milliseconds(ms));
         EXPECT_TRUE(sut.refresh(kStart + milliseconds(ms + 15)).empty());
     }
     EXPECT_TRUE(sut.refresh(kStart + milliseconds(250)).empty());
@@ -96,7 +96,7 @@ TEST(SceneMailbox, tells_the_frame_of_a_silent_server_before_the_limit_and_of_on
     EXPECT_EQ(silent[0].pose.arrival_ns, (kStart + milliseconds(200)).ns);
     EXPECT_EQ(silent[0].pose.scale, 2.0);
     EXPECT_TRUE(sut.refresh(kStart + milliseconds(400)).empty()); // The frame continues by itself.
-    sut.hear(0, kStart + milliseconds(401));
+    sut.note_heard(0, kStart + milliseconds(401));
     const auto back = sut.refresh(kStart + milliseconds(402));
     ASSERT_EQ(back.size(), 1U);
     EXPECT_EQ(back[0].pose.arrival_ns, 0);
@@ -184,7 +184,7 @@ TEST(SceneMailbox, glides_evenly_though_poses_come_early_or_late)
             sut.put(0, pose_at(kSpeed_m_per_ms * 10.0 * pose, milliseconds(10 * pose + 1)),
                     kStart + milliseconds(ms));
         }
-        sut.hear(0, kStart + milliseconds(ms));
+        sut.note_heard(0, kStart + milliseconds(ms));
         double next_m = at_m;
         for (const SceneChange& change : sut.refresh(kStart + milliseconds(ms)))
         {
@@ -499,7 +499,7 @@ TEST(SceneMailbox, tells_of_each_of_many_silent_objects_before_the_limit_once)
 TEST(SceneMailbox, leaves_an_object_that_came_and_whose_server_falls_silent_where_it_stands)
 {
     SceneMailbox sut({}, 3, kLimit);
-    ASSERT_TRUE(sut.try_come(2, 1, {}, pose_of(4.0), kStart));
+    ASSERT_TRUE(sut.try_add(2, 1, {}, pose_of(4.0), kStart));
     ASSERT_EQ(sut.refresh(kStart).size(), 1U);
     const auto silent = sut.refresh(kStart + milliseconds(60));
     ASSERT_EQ(silent.size(), 1U);
@@ -542,7 +542,7 @@ TEST(SceneMailbox, forgets_no_object_of_many_that_move_at_random)
     }
     for (std::size_t i = 0; i < kObjects; ++i)
     {
-        sut.hear(i, kStart + milliseconds(ms + 400));
+        sut.note_heard(i, kStart + milliseconds(ms + 400));
     }
     for (const int end = ms + 400; ms < end; ++ms)
     {
@@ -556,7 +556,7 @@ TEST(SceneMailbox, brings_an_object_with_what_it_is_and_takes_it_away)
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     SceneMailbox sut(placed, 3, kLimit);
     const ObjectSpec spec{ModelId{7}, {300.0, 0.4, 0.2, 1.5}};
-    ASSERT_TRUE(sut.try_come(2, 1, spec, pose_of(4.0), kStart));
+    ASSERT_TRUE(sut.try_add(2, 1, spec, pose_of(4.0), kStart));
     sut.put(2, pose_of(5.0), kStart); // Before the frame knows that it exists.
     const auto came = sut.refresh(kStart);
     ASSERT_EQ(came.size(), 2U);
@@ -574,7 +574,7 @@ TEST(SceneMailbox, brings_an_object_with_what_it_is_and_takes_it_away)
     EXPECT_EQ(came[1].generation, 1U);
     EXPECT_TRUE(sut.uses()[2].is_followed);
 
-    ASSERT_TRUE(sut.try_go(2));
+    ASSERT_TRUE(sut.try_remove(2));
     sut.put(2, pose_of(6.0), kStart);
     const auto went = sut.refresh(kStart + milliseconds(1));
     ASSERT_EQ(went.size(), 1U); // The pending pose is dropped.
@@ -589,10 +589,10 @@ TEST(SceneMailbox, tells_that_an_object_feels_otherwise_in_its_turn)
     const std::vector<ObjectPose> placed{pose_of(1.0)};
     SceneMailbox sut(placed, 2, kLimit);
     const Material honey{300.0, 0.4, 0.2, 1.5, 2.5, 1e-5, 1e-3};
-    ASSERT_TRUE(sut.try_feel(0, honey));
-    ASSERT_TRUE(sut.try_come(1, 5, {}, pose_of(2.0), kStart));
-    ASSERT_TRUE(sut.try_feel(1, honey));
-    ASSERT_TRUE(sut.try_go(1));
+    ASSERT_TRUE(sut.try_set_material(0, honey));
+    ASSERT_TRUE(sut.try_add(1, 5, {}, pose_of(2.0), kStart));
+    ASSERT_TRUE(sut.try_set_material(1, honey));
+    ASSERT_TRUE(sut.try_remove(1));
     const auto changes = sut.refresh(kStart);
     ASSERT_EQ(changes.size(), 4U);
     EXPECT_EQ(changes[0].kind, SceneChangeKind::object_feels);
@@ -605,7 +605,7 @@ TEST(SceneMailbox, tells_that_an_object_feels_otherwise_in_its_turn)
     EXPECT_EQ(changes[3].kind, SceneChangeKind::object_goes);
     EXPECT_FALSE(sut.uses()[0].is_followed) << "what it feels like says nothing of where it is";
     std::size_t waiting = 0;
-    while (sut.try_feel(0, honey))
+    while (sut.try_set_material(0, honey))
     {
         ++waiting;
     }
@@ -615,17 +615,17 @@ TEST(SceneMailbox, tells_that_an_object_feels_otherwise_in_its_turn)
     ASSERT_EQ(capacity_exceeded.size(), SceneMailbox::kTakenAFrame + 1)
         << "a move has room beside them";
     EXPECT_EQ(capacity_exceeded.back().kind, SceneChangeKind::object_moves);
-    EXPECT_TRUE(sut.try_feel(0, honey));
+    EXPECT_TRUE(sut.try_set_material(0, honey));
 }
 
 TEST(SceneMailbox, gives_no_object_what_was_put_for_the_one_before)
 {
     SceneMailbox sut({}, 1, kLimit);
-    ASSERT_TRUE(sut.try_come(0, 1, {}, pose_of(1.0), kStart));
+    ASSERT_TRUE(sut.try_add(0, 1, {}, pose_of(1.0), kStart));
     ASSERT_EQ(sut.refresh(kStart).size(), 1U);
     sut.put(0, pose_of(2.0), kStart);
-    ASSERT_TRUE(sut.try_go(0));
-    ASSERT_TRUE(sut.try_come(0, 2, {}, pose_of(3.0), kStart));
+    ASSERT_TRUE(sut.try_remove(0));
+    ASSERT_TRUE(sut.try_add(0, 2, {}, pose_of(3.0), kStart));
     const auto changes = sut.refresh(kStart + milliseconds(1));
     ASSERT_EQ(changes.size(), 2U);
     EXPECT_EQ(changes[0].kind, SceneChangeKind::object_goes);
@@ -640,10 +640,10 @@ TEST(SceneMailbox, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it
     SceneMailbox sut({}, SceneMailbox::kWaiting + 1, kLimit);
     for (std::size_t i = 0; i < SceneMailbox::kWaiting; ++i)
     {
-        ASSERT_TRUE(sut.try_come(i, 1, {}, pose_of(1.0), kStart));
+        ASSERT_TRUE(sut.try_add(i, 1, {}, pose_of(1.0), kStart));
     }
-    EXPECT_FALSE(sut.try_come(SceneMailbox::kWaiting, 1, {}, pose_of(1.0), kStart));
-    EXPECT_FALSE(sut.try_go(0));
+    EXPECT_FALSE(sut.try_add(SceneMailbox::kWaiting, 1, {}, pose_of(1.0), kStart));
+    EXPECT_FALSE(sut.try_remove(0));
     for (std::size_t first = 0; first < SceneMailbox::kWaiting; first += SceneMailbox::kTakenAFrame)
     {
         const auto changes = sut.refresh(kStart);
@@ -651,7 +651,7 @@ TEST(SceneMailbox, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it
         EXPECT_EQ(changes[0].number, first);
     }
     EXPECT_TRUE(sut.refresh(kStart).empty());
-    EXPECT_TRUE(sut.try_come(SceneMailbox::kWaiting, 1, {}, pose_of(1.0), kStart));
+    EXPECT_TRUE(sut.try_add(SceneMailbox::kWaiting, 1, {}, pose_of(1.0), kStart));
 }
 
 } // namespace

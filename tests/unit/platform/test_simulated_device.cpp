@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/devices/simulated/simulated_clock.hpp"
 #include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/devices/simulated/simulated_periodic_timer.hpp"
 
 #include <gtest/gtest.h>
 

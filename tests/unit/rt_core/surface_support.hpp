@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/force/near_object.hpp"
 #include "rt_core/force/placed_surface.hpp"
 #include "rt_core/force/proxy_goal.hpp"
 #include "rt_core/records/frame_output.hpp"

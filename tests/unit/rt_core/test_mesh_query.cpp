@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/crossing.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
 #include "rt_core/query/near_faces.hpp"

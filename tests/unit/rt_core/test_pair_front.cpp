@@ -4,8 +4,8 @@
 /// A front changes the work but no answer: each query that continues from the last one is compared
 /// with the same query from the roots, and with all pairs measured one by one.
 
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/crossing.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
 #include "tests/unit/rt_core/mesh_support.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/geometry/crossing.hpp"
-#include "rt_core/geometry/triangle_triangle.hpp"
 #include "rt_core/query/box_view.hpp"
 #include "rt_core/query/face_pair_queue.hpp"
 #include "rt_core/query/pair_walk.hpp"

@@ -75,10 +75,10 @@ struct Waiting
 TEST(BaseFetch, asks_for_each_part_once_and_has_the_base_mesh)
 {
     Waiting sut;
-    EXPECT_FALSE(bring_bases(sut.served, kPatience));
+    EXPECT_FALSE(fetch_base_meshes(sut.served, kPatience));
     EXPECT_TRUE(sut.is_whole());
     EXPECT_EQ(sut.link->asked, parts_of(sut.model.base.size()));
-    EXPECT_FALSE(bring_bases(sut.served, kPatience)); // The base mesh is resident.
+    EXPECT_FALSE(fetch_base_meshes(sut.served, kPatience)); // The base mesh is resident.
     EXPECT_EQ(sut.link->asked, parts_of(sut.model.base.size()));
 }
 
@@ -87,7 +87,7 @@ TEST(BaseFetch, asks_again_for_what_is_lost_and_drops_what_comes_twice)
     for (std::uint64_t seed = 1; seed <= 3; ++seed)
     {
         Waiting sut({.seed = seed, .loss = 0.6, .duplicates = 0.5, .delay_polls_max = 5});
-        EXPECT_FALSE(bring_bases(sut.served, kPatience)) << seed;
+        EXPECT_FALSE(fetch_base_meshes(sut.served, kPatience)) << seed;
         EXPECT_TRUE(sut.is_whole()) << seed;
     }
 }
@@ -95,7 +95,7 @@ TEST(BaseFetch, asks_again_for_what_is_lost_and_drops_what_comes_twice)
 TEST(BaseFetch, refuses_a_base_mesh_that_the_header_does_not_name)
 {
     Waiting sut({.damage = 1.0});
-    const auto refusal = bring_bases(sut.served, kPatience);
+    const auto refusal = fetch_base_meshes(sut.served, kPatience);
     ASSERT_TRUE(refusal);
     EXPECT_EQ(refusal->text,
               "model 'tiny' has a base mesh that does not match the hash in its header");
@@ -126,11 +126,11 @@ TEST(BaseFetch, ends_when_it_may_not_go_on_and_says_what_is_missing)
     Waiting sut;
     sut.link->lose_server();
     int rounds = 0;
-    const auto refusal = bring_bases(sut.served, kPatience, [&] { return ++rounds < 3; });
+    const auto refusal = fetch_base_meshes(sut.served, kPatience, [&] { return ++rounds < 3; });
     ASSERT_TRUE(refusal);
     EXPECT_TRUE(refusal->text.starts_with("the base mesh of model 'tiny' did not arrive (waited "))
         << refusal->text;
-    EXPECT_TRUE(bring_bases(sut.served, std::chrono::milliseconds(0)));
+    EXPECT_TRUE(fetch_base_meshes(sut.served, std::chrono::milliseconds(0)));
 }
 
 } // namespace

@@ -280,7 +280,7 @@ TEST_F(Dds, many_models_start_at_once_and_a_base_mesh_of_several_parts_comes_who
                                     [](const ServedModel& model) { return model.base.empty(); }));
     const std::uint64_t pieces = many.counters().pieces_sent;
     EXPECT_EQ(pieces, models.size()); // Their headers, and nothing else.
-    EXPECT_FALSE(bring_bases(found.value(), kPatience));
+    EXPECT_FALSE(fetch_base_meshes(found.value(), kPatience));
     for (std::size_t i = 0; i < models.size(); ++i)
     {
         EXPECT_TRUE(std::ranges::equal(found.value()[i].header, models[i].header)) << i;

@@ -715,7 +715,7 @@ TEST_F(DdsObjects, come_to_many_controllers_a_few_at_a_time)
             for (const auto& each : crowd)
             {
                 each->step();
-                joining += each->client().exchange().is_let_in(server->epoch()) &&
+                joining += each->client().exchange().is_admitted(server->epoch()) &&
                                    !each->scene().is_complete(server->epoch())
                                ? 1
                                : 0;
@@ -737,7 +737,7 @@ TEST_F(DdsObjects, motion_that_is_not_heard_comes_by_another_writer)
     ASSERT_TRUE(step_until(
         [&]
         {
-            follower->client().exchange().tell_objects_are_here(server->epoch(), false);
+            follower->client().exchange().report_objects_received(server->epoch(), false);
             follower->client().exchange().step();
             return server->counters().renewed > 0;
         }));

@@ -146,12 +146,12 @@ TEST_F(DdsServers, a_base_mesh_comes_from_the_next_where_the_first_is_silent_or_
         auto found = find({"tiny"});
         ASSERT_TRUE(found) << found.error().text;
         EXPECT_EQ(found.value()[0].server_epoch, strangers[0]->epoch());
-        const auto refusal = bring_bases(found.value(), kPatience,
-                                         [this]
-                                         {
-                                             step();
-                                             return true;
-                                         });
+        const auto refusal = fetch_base_meshes(found.value(), kPatience,
+                                               [this]
+                                               {
+                                                   step();
+                                                   return true;
+                                               });
         EXPECT_FALSE(refusal) << refusal->text;
         EXPECT_TRUE(std::ranges::equal(found.value()[0].base, model.base));
     }
@@ -163,12 +163,12 @@ TEST_F(DdsServers, a_base_mesh_that_all_forge_is_refused)
     come(model).forge(ContentKind::base, Forgery::another_byte);
     auto found = find({"tiny"});
     ASSERT_TRUE(found) << found.error().text;
-    const auto refusal = bring_bases(found.value(), kPatience,
-                                     [this]
-                                     {
-                                         step();
-                                         return true;
-                                     });
+    const auto refusal = fetch_base_meshes(found.value(), kPatience,
+                                           [this]
+                                           {
+                                               step();
+                                               return true;
+                                           });
     ASSERT_TRUE(refusal);
     EXPECT_EQ(refusal->text,
               "model 'tiny' has a base mesh that does not match the hash in its header");

@@ -59,7 +59,7 @@ TEST_F(ProgramSceneTest, an_object_comes_moves_feels_and_goes_in_this_order)
     Similarity place;
     place.translation_m = Vec3(0.1, 0.0, 0.0);
     EXPECT_TRUE(sut_->try_move(*second, place));
-    EXPECT_TRUE(sut_->try_feel(*second, {.static_friction = 1.0}));
+    EXPECT_TRUE(sut_->try_set_material(*second, {.static_friction = 1.0}));
     told = changes();
     ASSERT_EQ(told.size(), 2U);
     EXPECT_EQ(told[0].kind, SceneChangeKind::object_feels);
@@ -67,7 +67,7 @@ TEST_F(ProgramSceneTest, an_object_comes_moves_feels_and_goes_in_this_order)
 
     EXPECT_TRUE(sut_->try_remove(*second));
     EXPECT_FALSE(sut_->try_move(*second, place));
-    EXPECT_FALSE(sut_->try_feel(*second, {}));
+    EXPECT_FALSE(sut_->try_set_material(*second, {}));
     EXPECT_FALSE(sut_->try_remove(*second));
     EXPECT_FALSE(sut_->place_of(*second));
     told = changes();
