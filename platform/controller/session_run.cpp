@@ -2,12 +2,21 @@
 // Copyright the Tactus authors.
 #include "platform/controller/session_run.hpp"
 
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/controller.hpp"
 #include "platform/controller/failed_run.hpp"
+#include "platform/controller/guardian.hpp"
+#include "platform/controller/recorder.hpp"
+#include "platform/controller/server_topics.hpp"
+#include "platform/controller/trace_file.hpp"
 #include "platform/devices/udp/udp_device.hpp"
+#include "platform/loop/hand_tap.hpp"
 #include "platform/loop/machine.hpp"
 #include "platform/machine/allocation_counter.hpp"
 #include "platform/machine/posix/service_notify.hpp"
 #include "platform/machine/system_call_trap.hpp"
+#include "platform/scene/program_scene.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "transport/base/counted.hpp"
 #include "transport/inside_test.hpp"
 

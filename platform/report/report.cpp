@@ -9,7 +9,11 @@
 #include "platform/loop/machine.hpp"
 #include "platform/machine/allocation_counter.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/forest/vertex_forest.hpp"
+#include "rt_core/frame/frame.hpp"
+#include "rt_core/scene/object_table.hpp"
 #include "transport/base/atomic_file.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
