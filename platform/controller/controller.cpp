@@ -118,6 +118,16 @@ const Frame& Controller::frame() const noexcept
     return *core_->frame;
 }
 
+const ObjectTable& Controller::object_table() const noexcept
+{
+    return frame().objects();
+}
+
+PagePool& Controller::page_pool() noexcept
+{
+    return frame().pools().cache.pages;
+}
+
 ChunkLoader& Controller::chunk_loader() noexcept
 {
     return *core_->chunk_loader;
@@ -151,7 +161,7 @@ std::vector<std::uint32_t> Controller::first_objects() const
 
 SceneParts Controller::scene_parts() const
 {
-    return {models_, objects_, tools_, first_objects(), frame().objects().capacity()};
+    return {models_, objects_, tools_, first_objects(), object_table().capacity()};
 }
 
 void Controller::make_poses(const Options& options)

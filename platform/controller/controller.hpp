@@ -28,6 +28,8 @@ namespace tactus
 
 class ChunkLoader;
 class Frame;
+class ObjectTable;
+struct PagePool;
 
 } // namespace tactus
 
@@ -58,6 +60,10 @@ public:
 
     [[nodiscard]] Frame& frame() noexcept;
     [[nodiscard]] const Frame& frame() const noexcept;
+    /// Objects of the frame by their numbers.
+    [[nodiscard]] const ObjectTable& object_table() const noexcept;
+    /// Page slots of the frame's models.
+    [[nodiscard]] PagePool& page_pool() noexcept;
     [[nodiscard]] ChunkLoader& chunk_loader() noexcept;
     [[nodiscard]] const ChunkLoader& chunk_loader() const noexcept;
     [[nodiscard]] std::vector<ToolSetup>& tools() noexcept { return tools_; }

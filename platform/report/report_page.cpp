@@ -5,7 +5,6 @@
 #include "platform/report/latency_chart.hpp"
 #include "platform/report/report.hpp"
 #include "platform/report/verdict.hpp"
-#include "rt_core/frame/frame.hpp"
 #include "transport/base/counted.hpp"
 
 #include <fmt/format.h>

@@ -14,7 +14,7 @@
 #include "platform/world/program_devices.hpp"
 #include "platform/world/world_values.hpp"
 #include "platform/world/world_words.hpp"
-#include "rt_core/frame/frame.hpp"
+#include "rt_core/scene/object_table.hpp"
 #include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
@@ -262,7 +262,7 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
         if (!added)
         {
             return failure(fmt::format("objects_max: {} are there already; use a larger value",
-                                       counted(controller.frame().objects().capacity(), "object")));
+                                       counted(controller.object_table().capacity(), "object")));
         }
         key = *added;
     }
