@@ -143,6 +143,7 @@ tactus_component(core
         rt_core/frame/frame.hpp
         rt_core/frame/frame_setup.hpp
         rt_core/frame/model.hpp
+        rt_core/frame/model_capacities.hpp
         rt_core/geometry/object_speed_limit.hpp
         rt_core/geometry/convex.hpp
         rt_core/geometry/shapes.hpp

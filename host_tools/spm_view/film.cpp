@@ -3,6 +3,7 @@
 #include "host_tools/spm_view/film.hpp"
 
 #include "platform/recording/replay.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/telemetry_from_frame.hpp"
 

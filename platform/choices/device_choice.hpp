@@ -3,15 +3,13 @@
 #pragma once
 
 #include "platform/choices/placement.hpp"
-#include "platform/devices/device_guard.hpp"
 #include "platform/devices/haptic_device.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/faulty_device.hpp"
-#include "platform/devices/simulated/replay_device.hpp"
-#include "platform/devices/udp/udp_device.hpp"
-#include "platform/machine/clock.hpp"
-#include "platform/recording/recording.hpp"
+#include "platform/devices/udp/udp_device_options.hpp"
+#include "platform/machine/time.hpp"
 #include "rt_core/base/result.hpp"
+#include "rt_core/math/similarity.hpp"
 #include "rt_core/records/device_limits.hpp"
 #include "transport/base/refusal.hpp"
 
@@ -22,6 +20,15 @@
 #include <optional>
 #include <string>
 #include <string_view>
+
+namespace tactus
+{
+
+class Clock;
+class DeviceGuard;
+struct ReplayDeviceOptions;
+
+} // namespace tactus
 
 namespace tactus::hrtc
 {

@@ -4,15 +4,18 @@
 
 #include "platform/choices/device_choice.hpp"
 #include "platform/choices/file_readers.hpp"
-#include "platform/choices/fixture.hpp"
+#include "platform/choices/fixture_choice.hpp"
 #include "platform/choices/placement.hpp"
 #include "platform/choices/scene_materials.hpp"
 #include "platform/choices/tool_choice.hpp"
-#include "platform/devices/simulated/operator_motions.hpp"
+#include "platform/devices/simulated/faulty_device.hpp"
+#include "platform/devices/simulated/motion_kind.hpp"
 #include "platform/machine/rt_thread.hpp"
-#include "rt_core/kernels/kernels.hpp"
+#include "platform/machine/time.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/prediction.hpp"
+#include "rt_core/records/tool_load.hpp"
 #include "transport/base/network_security.hpp"
 #include "transport/model_name.hpp"
 
@@ -23,8 +26,17 @@
 #include <string_view>
 #include <vector>
 
+namespace tactus
+{
+
+struct Kernels;
+
+} // namespace tactus
+
 namespace tactus::hrtc
 {
+
+class ExternalForceSource;
 
 enum class TransportKind : std::uint8_t
 {

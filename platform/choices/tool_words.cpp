@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/choices/tool_words.hpp"
 
+#include "platform/choices/run_options.hpp"
 #include "platform/devices/dhd/dhd_device.hpp"
 #include "platform/devices/remote/info_fault.hpp"
 #include "platform/loop/burr.hpp"

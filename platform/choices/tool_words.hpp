@@ -2,15 +2,21 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/run_options.hpp"
-#include "rt_core/records/device_limits.hpp"
-
 #include <string>
 #include <string_view>
+
+namespace tactus
+{
+
+struct DeviceLimits;
+
+} // namespace tactus
 
 // Any thread except the haptic one, because strings allocate.
 namespace tactus::hrtc
 {
+
+struct ToolOptions;
 
 /// Each parses the value of one option of a tool and sets it: of --tool, --tool-mass, --fixture,
 /// --device, --device-limits, --device-frame and --motion, in this order. Returns the fault, and

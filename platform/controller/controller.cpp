@@ -2,17 +2,23 @@
 // Copyright the Tactus authors.
 #include "platform/controller/controller.hpp"
 
+#include "platform/choices/fixture.hpp"
+#include "platform/choices/run_options.hpp"
 #include "platform/controller/following_operator.hpp"
 #include "platform/devices/simulated/operator_motions.hpp"
 #include "platform/devices/simulated/simulated_device.hpp"
+#include "platform/machine/pool_memory.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "platform/scene/object_pose.hpp"
 #include "platform/scene/scene_parts.hpp"
+#include "rt_core/base/arena.hpp"
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/counted.hpp"
 #include "transport/base_fetch.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/pool_plan.hpp"
 
 #include <fmt/format.h>
@@ -50,6 +56,16 @@ double up_to_cents(double value)
 }
 
 } // namespace
+
+struct Controller::Core
+{
+    explicit Core(std::size_t bytes) : memory(bytes), arena(memory.span()) {}
+
+    PoolMemory memory;
+    Arena arena;
+    std::optional<Frame> frame;
+    std::optional<ChunkLoader> chunk_loader;
+};
 
 Result<std::unique_ptr<Controller>, Refusal>
 Controller::create(const Options& options, std::vector<ServedModel> models, const Log& log,
@@ -90,6 +106,43 @@ Controller::Controller(std::vector<ServedModel> models, const std::function<bool
     }
 }
 
+Controller::~Controller() = default;
+
+Frame& Controller::frame() noexcept
+{
+    return *core_->frame;
+}
+
+const Frame& Controller::frame() const noexcept
+{
+    return *core_->frame;
+}
+
+const ObjectTable& Controller::object_table() const noexcept
+{
+    return frame().objects();
+}
+
+PagePool& Controller::page_pool() noexcept
+{
+    return frame().pools().cache.pages;
+}
+
+ChunkLoader& Controller::chunk_loader() noexcept
+{
+    return *core_->chunk_loader;
+}
+
+const ChunkLoader& Controller::chunk_loader() const noexcept
+{
+    return *core_->chunk_loader;
+}
+
+std::size_t Controller::pool_bytes() const noexcept
+{
+    return core_->arena.used() + sizeof(Frame);
+}
+
 double Controller::diagonal_world_m() const noexcept
 {
     return diagonal_of(0);
@@ -108,7 +161,7 @@ std::vector<std::uint32_t> Controller::first_objects() const
 
 SceneParts Controller::scene_parts() const
 {
-    return {models_, objects_, tools_, first_objects(), frame_->objects().capacity()};
+    return {models_, objects_, tools_, first_objects(), object_table().capacity()};
 }
 
 void Controller::make_poses(const Options& options)
@@ -261,10 +314,9 @@ std::optional<Refusal> Controller::lay_out_pools(const Options& options)
     }
     setup_.models = sources_;
     const ModelCapacities sum = pool_capacities(setup_);
-    memory_.emplace(Frame::required_bytes(setup_) +
-                    ChunkLoader::required_bytes(sum.pages, sum.index_pages));
-    arena_.emplace(memory_->span());
-    if (const auto started = Frame::start(frame_, *arena_, setup_); !started)
+    core_ = std::make_unique<Core>(Frame::required_bytes(setup_) +
+                                   ChunkLoader::required_bytes(sum.pages, sum.index_pages));
+    if (const auto started = Frame::start(core_->frame, core_->arena, setup_); !started)
     {
         return Refusal{
             fmt::format("--pool-mib: {} MiB: {}", options.pool_mib, refusal_text(started.error()))};
@@ -306,15 +358,15 @@ bool Controller::try_plan_as_streamed_models(const Options& options, std::size_t
 
 void Controller::make_chunk_loader(const Log& log)
 {
-    ModelPools& pools = frame_->pools();
-    ChunkLoaderOptions chunk_loader;
-    chunk_loader.forgotten_ns =
-        std::max(chunk_loader.forgotten_ns, 3 * kRequestTimeoutFrames * setup_.period_ns);
-    chunk_loader_.emplace(*arena_, pools.slots, pools.cache.queues, log, chunk_loader);
+    ModelPools& pools = frame().pools();
+    ChunkLoaderOptions options;
+    options.forgotten_ns =
+        std::max(options.forgotten_ns, 3 * kRequestTimeoutFrames * setup_.period_ns);
+    core_->chunk_loader.emplace(core_->arena, pools.slots, pools.cache.queues, log, options);
     for (std::uint32_t i = 0; i < models_.size(); ++i)
     {
-        Model& model = frame_->model({i});
-        chunk_loader_->add(model.header, model.linker, *models_[i].link, models_[i].name);
+        Model& model = frame().model({i});
+        chunk_loader().add(model.header, model.linker, *models_[i].link, models_[i].name);
     }
 }
 
@@ -329,7 +381,7 @@ std::optional<Refusal> Controller::finish_devices(const Options& options)
                 return error;
             }
         }
-        tools_[tool].spec = frame_->tool(static_cast<std::uint32_t>(tool)).spec();
+        tools_[tool].spec = frame().tool(static_cast<std::uint32_t>(tool)).spec();
         limit_force(options, tools_[tool]);
         if (auto error = hang_load(options, tool))
         {
@@ -453,7 +505,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
     {
         device_options.workspace_radius_m = kPoseReachMax_m;
         motion.value().motion = std::make_unique<FollowingOperator>(
-            std::move(motion.value().motion), frame_->objects(), static_cast<std::uint32_t>(object),
+            std::move(motion.value().motion), frame().objects(), static_cast<std::uint32_t>(object),
             model_pose(poses_[object], headers_[objects_[object].model.value].origin_m()),
             0.5 * kOperatorSpeed_diag * scene.diagonal_m * to_seconds(options.period()));
     }

@@ -2,15 +2,16 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/run_options.hpp"
-#include "platform/devices/haptic_device.hpp"
 #include "platform/loop/tool_port.hpp"
-#include "platform/machine/pool_memory.hpp"
 #include "platform/machine/posix/posix_clock.hpp"
 #include "platform/scene/scene_parts.hpp"
-#include "rt_core/frame/frame.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/frame/frame_setup.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/object_pose.hpp"
+#include "rt_core/spm/header.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/chunk_loader.hpp"
+#include "transport/log.hpp"
 #include "transport/served_model.hpp"
 
 #include <cstddef>
@@ -22,8 +23,21 @@
 #include <string>
 #include <vector>
 
+namespace tactus
+{
+
+class ChunkLoader;
+class Frame;
+class ObjectTable;
+struct PagePool;
+
+} // namespace tactus
+
 namespace tactus::hrtc
 {
+
+class VirtualFixture;
+struct Options;
 
 /// All parts of a run between the transport and the devices: pools, frame, chunk loader, object
 /// poses and devices. create() assembles them before any thread starts.
@@ -40,10 +54,18 @@ public:
     create(const Options& options, std::vector<ServedModel> models, const Log& log,
            const std::function<bool()>& goes_on);
 
-    [[nodiscard]] Frame& frame() noexcept { return *frame_; }
-    [[nodiscard]] const Frame& frame() const noexcept { return *frame_; }
-    [[nodiscard]] ChunkLoader& chunk_loader() noexcept { return *chunk_loader_; }
-    [[nodiscard]] const ChunkLoader& chunk_loader() const noexcept { return *chunk_loader_; }
+    Controller(const Controller&) = delete;
+    Controller& operator=(const Controller&) = delete;
+    ~Controller();
+
+    [[nodiscard]] Frame& frame() noexcept;
+    [[nodiscard]] const Frame& frame() const noexcept;
+    /// Objects of the frame by their numbers.
+    [[nodiscard]] const ObjectTable& object_table() const noexcept;
+    /// Page slots of the frame's models.
+    [[nodiscard]] PagePool& page_pool() noexcept;
+    [[nodiscard]] ChunkLoader& chunk_loader() noexcept;
+    [[nodiscard]] const ChunkLoader& chunk_loader() const noexcept;
     [[nodiscard]] std::vector<ToolSetup>& tools() noexcept { return tools_; }
     [[nodiscard]] const std::vector<ToolSetup>& tools() const noexcept { return tools_; }
     /// Objects by their numbers, with their places at the start.
@@ -59,11 +81,14 @@ public:
     /// Setup of the frame at its start.
     [[nodiscard]] const FrameSetup& setup() const noexcept { return setup_; }
     /// Bytes of the frame, its pools and tables, and the chunk loader's memory.
-    [[nodiscard]] std::size_t pool_bytes() const noexcept { return arena_->used() + sizeof(Frame); }
+    [[nodiscard]] std::size_t pool_bytes() const noexcept;
     /// Diagonal of the first object, in the world.
     [[nodiscard]] double diagonal_world_m() const noexcept;
 
 private:
+    /// Frame and chunk loader, with the memory of their pools.
+    struct Core;
+
     Controller(std::vector<ServedModel> models, const std::function<bool()>& goes_on);
 
     [[nodiscard]] std::optional<Refusal> lay_out_pools(const Options& options);
@@ -98,11 +123,8 @@ private:
     std::vector<ModelSource> sources_; ///< Views into models_.
     FrameSetup setup_;                 ///< Views into the members above.
     Budgets budgets_;
-    std::optional<PoolMemory> memory_; ///< Memory of the size that the plan needs.
-    std::optional<Arena> arena_;
-    std::optional<Frame> frame_;
-    std::optional<ChunkLoader> chunk_loader_;
-    PosixClock clock_; ///< Clock of the devices that aren't simulated.
+    std::unique_ptr<Core> core_; ///< Null before lay_out_pools().
+    PosixClock clock_;           ///< Clock of the devices that aren't simulated.
     std::vector<std::unique_ptr<VirtualFixture>> fixtures_; ///< Fixtures, which the tools borrow.
     std::vector<ToolSetup> tools_;
     /// Object numbers of the simulated operators made so far.

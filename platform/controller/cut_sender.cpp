@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/controller/cut_sender.hpp"
 
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/controller.hpp"
 #include "platform/devices/device_force.hpp"
 #include "rt_core/base/assert.hpp"
 

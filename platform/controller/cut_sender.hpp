@@ -2,10 +2,11 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/run_options.hpp"
-#include "platform/controller/controller.hpp"
+#include "platform/controller/run_results.hpp"
 #include "platform/loop/burr.hpp"
 #include "platform/loop/cut_tap.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/math/vec3.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/edit_request.hpp"
 
@@ -19,18 +20,12 @@
 namespace tactus::hrtc
 {
 
+class Controller;
+struct Options;
+
 /// Request of a cut for the owner of its model. `origin_m` is that of the model's header.
 [[nodiscard]] EditRequest request_of(const BurrCut& cut, const BurrShape& shape,
                                      const Vec3& origin_m);
-
-/// Counts of the edits that this controller's tools asked for.
-struct CutCounts
-{
-    std::uint64_t sent{0};
-    std::uint64_t unsent{0}; ///< Cuts of models without edits, not permitted, or without room.
-    std::uint64_t samples_lost{0}; ///< CutTap::lost().
-    double volume_m3{0.0};         ///< Greatest volume that the sent ones remove.
-};
 
 /// Makes edit requests where tools press on models, for a server or an editor of this process. One
 /// thread, not the haptic one.

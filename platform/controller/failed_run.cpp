@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/controller/failed_run.hpp"
 
+#include "platform/recording/last_inputs.hpp"
 #include "platform/recording/recording_writer.hpp"
 #include "transport/base/atomic_file.hpp"
 

@@ -2,13 +2,21 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/last_inputs.hpp"
-#include "rt_core/frame/frame.hpp"
+#include "platform/recording/frame_encoder.hpp"
+#include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+
+namespace tactus
+{
+
+class LastInputs;
+struct FrameSetup;
+
+} // namespace tactus
 
 namespace tactus::hrtc
 {

@@ -2,18 +2,15 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/controller/cut_sender.hpp"
-#include "platform/controller/recorder.hpp"
-#include "platform/controller/trace_file.hpp"
+#include "platform/controller/run_results.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/loop/safety_record.hpp"
 #include "platform/loop/scene_mailbox.hpp"
 #include "platform/machine/periodic_timer.hpp"
 #include "platform/machine/rt_thread.hpp"
 #include "platform/machine/time.hpp"
-#include "platform/scene/scene_keeper.hpp"
+#include "platform/scene/scene_news_counts.hpp"
 #include "transport/dds/authority.hpp"
-#include "transport/dds/dds_client.hpp"
 #include "transport/dds/edit_reader.hpp"
 #include "transport/dds/refusals.hpp"
 #include "transport/dds/scene_reader.hpp"

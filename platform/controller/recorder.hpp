@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/controller/run_results.hpp"
 #include "platform/controller/writer_thread.hpp"
 #include "platform/recording/frame_tap.hpp"
 #include "platform/recording/recording_writer.hpp"
@@ -19,14 +20,6 @@
 
 namespace tactus::hrtc
 {
-
-/// Result of a recording, for the report.
-struct RecordingResult
-{
-    std::uint64_t frames{0};
-    std::uint64_t bytes{0};
-    std::uint64_t lost_from{kNoFrame}; ///< First missing frame; kNoFrame: none.
-};
 
 /// Writes a run's recording, on its own thread of ordinary priority or in the caller's step().
 /// Frames arrive from the haptic thread through a FrameTap, which never waits. Pieces arrive from

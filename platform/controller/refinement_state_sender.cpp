@@ -2,7 +2,13 @@
 // Copyright the Tactus authors.
 #include "platform/controller/refinement_state_sender.hpp"
 
+#include "platform/controller/controller.hpp"
+#include "platform/scene/scene_keeper.hpp"
+#include "rt_core/cache/slot_queues.hpp"
+#include "rt_core/scene/object_table.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/chunk_loader.hpp"
+#include "transport/dds/dds_client.hpp"
 #include "transport/telemetry_from_frame.hpp"
 
 #include <algorithm>

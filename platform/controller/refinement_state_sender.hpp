@@ -2,20 +2,29 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/controller/controller.hpp"
 #include "platform/loop/refinement_state_tap.hpp"
 #include "platform/machine/time.hpp"
-#include "platform/scene/scene_keeper.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/limits.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/dds/dds_client.hpp"
 #include "transport/dds/front.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
 
+namespace tactus::dds
+{
+
+class DdsClient;
+
+} // namespace tactus::dds
+
 namespace tactus::hrtc
 {
+
+class Controller;
+class SceneKeeper;
 
 /// Refinement state for viewers: the haptic thread's copy, completed by data of the transport
 /// thread such as model hashes, tool shapes and requested chunks. Means cover the frames since

@@ -2,9 +2,19 @@
 // Copyright the Tactus authors.
 #include "platform/controller/server_topics.hpp"
 
+#include "platform/controller/controller.hpp"
+#include "platform/controller/cut_sender.hpp"
+#include "platform/controller/refinement_state_sender.hpp"
+#include "platform/loop/edit_mailbox.hpp"
+#include "platform/loop/scene_mailbox.hpp"
+#include "platform/loop/telemetry_tap.hpp"
 #include "rt_core/base/assert.hpp"
+#include "rt_core/frame/model.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/chunk_loader.hpp"
+#include "transport/dds/dds_client.hpp"
 #include "transport/telemetry_from_frame.hpp"
+#include "transport/waiting_times.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -86,6 +96,8 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
     }
 }
 
+ServerTopics::~ServerTopics() = default;
+
 void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
                            RefinementStateTap* front, MonotonicTime now,
                            SceneKeeper::NameSink names)
@@ -118,6 +130,11 @@ void ServerTopics::add_cuts(std::unique_ptr<CutSender> cuts) noexcept
 {
     TACTUS_ASSERT(edits_ != nullptr);
     cuts_ = std::move(cuts);
+}
+
+CutTap* ServerTopics::cut_tap() noexcept
+{
+    return cuts_ != nullptr ? &cuts_->tap() : nullptr;
 }
 
 void ServerTopics::tell_begins_inside(std::size_t tool) noexcept
@@ -189,6 +206,16 @@ std::vector<dds::ServerEvent> ServerTopics::server_events() const
     }
     std::ranges::stable_sort(events, {}, &dds::ServerEvent::time);
     return events;
+}
+
+std::vector<dds::PeerRefusals> ServerTopics::refused() const
+{
+    return client_.domain().participants().refusals().list();
+}
+
+std::uint64_t ServerTopics::states_sent() const noexcept
+{
+    return front_ != nullptr ? front_->sent() : 0;
 }
 
 std::vector<dds::EditReader::Counts> ServerTopics::edit_counts() const

@@ -2,19 +2,17 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/controller/controller.hpp"
-#include "platform/controller/cut_sender.hpp"
-#include "platform/controller/refinement_state_sender.hpp"
-#include "platform/loop/edit_mailbox.hpp"
-#include "platform/loop/scene_mailbox.hpp"
-#include "platform/loop/telemetry_tap.hpp"
+#include "platform/controller/run_results.hpp"
 #include "platform/machine/time.hpp"
 #include "platform/scene/scene_keeper.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/math/vec3.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/dds/authority.hpp"
-#include "transport/dds/dds_client.hpp"
 #include "transport/dds/edit_reader.hpp"
+#include "transport/dds/refusals.hpp"
 #include "transport/dds/telemetry.hpp"
+#include "transport/log.hpp"
 
 #include <cstdint>
 #include <map>
@@ -25,8 +23,30 @@
 #include <string>
 #include <vector>
 
+namespace tactus
+{
+
+class EditMailbox;
+class SceneMailbox;
+
+} // namespace tactus
+
+namespace tactus::dds
+{
+
+class DdsClient;
+
+} // namespace tactus::dds
+
 namespace tactus::hrtc
 {
+
+class Controller;
+class CutSender;
+class CutTap;
+class RefinementStateSender;
+class RefinementStateTap;
+class TelemetryTap;
 
 /// Topics between a controller and its servers and viewers, except those of models. Servers move
 /// objects; the controller publishes its state. Runs on the transport thread and can't delay the
@@ -48,6 +68,10 @@ public:
            std::span<dds::Authority> authorities, std::unique_ptr<SceneKeeper> keeper,
            bool shows_refinement_state, const Log& log);
 
+    ServerTopics(const ServerTopics&) = delete;
+    ServerTopics& operator=(const ServerTopics&) = delete;
+    ~ServerTopics();
+
     /// Connects the topics to the mailbox and taps of the haptic thread, which must live as long as
     /// the run. `front` may be null if shows_refinement_state() is false. `names` receives the
     /// names of objects added later, and may be empty. `edits` may be null if has_edits() is false.
@@ -62,7 +86,7 @@ public:
     /// it before the run.
     void add_cuts(std::unique_ptr<CutSender> cuts) noexcept;
     /// Tap of the tools that carve; null without any.
-    [[nodiscard]] CutTap* cut_tap() noexcept { return cuts_ != nullptr ? &cuts_->tap() : nullptr; }
+    [[nodiscard]] CutTap* cut_tap() noexcept;
     /// True if a model of a server has room for faces that edits add.
     [[nodiscard]] bool has_edits() const noexcept { return edits_ != nullptr; }
     [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
@@ -80,17 +104,11 @@ public:
     /// Counts of the edit requests of the tools that carve; none without any. Not during a step.
     [[nodiscard]] std::optional<CutCounts> cut_counts() const;
     /// Refused messages of other participants of the domain.
-    [[nodiscard]] std::vector<dds::PeerRefusals> refused() const
-    {
-        return client_.domain().participants().refusals().list();
-    }
+    [[nodiscard]] std::vector<dds::PeerRefusals> refused() const;
     /// Events of the servers with authority, in order of time.
     [[nodiscard]] std::vector<dds::ServerEvent> server_events() const;
     [[nodiscard]] std::uint64_t telemetry_sent() const noexcept { return telemetry_->sent(); }
-    [[nodiscard]] std::uint64_t states_sent() const noexcept
-    {
-        return front_ != nullptr ? front_->sent() : 0;
-    }
+    [[nodiscard]] std::uint64_t states_sent() const noexcept;
 
 private:
     /// Number of pieces of one model, and the sum of their waiting times, when telemetry was last

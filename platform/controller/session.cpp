@@ -3,11 +3,19 @@
 #include "platform/controller/session.hpp"
 
 #include "platform/choices/device_choice.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/controller/cut_sender.hpp"
+#include "platform/controller/guardian.hpp"
 #include "platform/controller/histogram_folder.hpp"
+#include "platform/controller/server_topics.hpp"
+#include "platform/controller/session_run.hpp"
 #include "platform/devices/plugin/device_plugin.hpp"
+#include "platform/loop/hand_tap.hpp"
 #include "platform/machine/posix/linux_extras.hpp"
+#include "platform/scene/program_scene.hpp"
 #include "platform/scene/scene_choice.hpp"
 #include "transport/base/atomic_file.hpp"
+#include "transport/dds/dds_client.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
@@ -222,6 +230,13 @@ Result<std::unique_ptr<Guardian>, Refusal> start_guardian(const Options& options
 }
 
 } // namespace
+
+Session::Session(const Options& options, RunHooks hooks)
+    : options_(options), hooks_(std::move(hooks))
+{
+}
+
+Session::~Session() = default;
 
 Result<std::unique_ptr<Session>, Refusal> Session::open(const Options& options, RunHooks hooks)
 {

@@ -2,33 +2,41 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
-#include "platform/controller/controller.hpp"
-#include "platform/controller/finished_run.hpp"
-#include "platform/controller/guardian.hpp"
+#include "platform/controller/program_edits.hpp"
 #include "platform/controller/recorder.hpp"
 #include "platform/controller/run_hooks.hpp"
-#include "platform/controller/server_topics.hpp"
-#include "platform/controller/session_run.hpp"
 #include "platform/controller/trace_file.hpp"
-#include "platform/loop/hand_tap.hpp"
-#include "platform/scene/program_scene.hpp"
 #include "platform/scene/scene_choice.hpp"
+#include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/dds/authority.hpp"
-#include "transport/dds/dds_client.hpp"
-#include "transport/dds/scene_reader.hpp"
+#include "transport/model_name.hpp"
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
+
+namespace tactus::dds
+{
+
+class DdsClient;
+class SceneReader;
+
+} // namespace tactus::dds
 
 namespace tactus::hrtc
 {
+
+class Controller;
+class Guardian;
+class HandTap;
+class ProgramScene;
+class ServerTopics;
+class SessionRun;
+struct FinishedRun;
 
 /// Session of one run: finds the models of the options and assembles a controller for them.
 class Session
@@ -38,6 +46,10 @@ public:
     /// controller. Waits at most options.wait_s for models that aren't published yet.
     [[nodiscard]] static Result<std::unique_ptr<Session>, Refusal> open(const Options& options,
                                                                         RunHooks hooks = {});
+
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+    ~Session();
 
     /// Options given to open(), with the objects, models and places of the scene added.
     [[nodiscard]] const Options& options() const noexcept { return options_; }
@@ -65,7 +77,7 @@ public:
     [[nodiscard]] Result<FinishedRun, Refusal> run(const std::string& what);
 
 private:
-    Session(const Options& options, RunHooks hooks) : options_(options), hooks_(std::move(hooks)) {}
+    Session(const Options& options, RunHooks hooks);
 
     [[nodiscard]] bool goes_on() const { return hooks_.goes_on(); }
 

@@ -2,12 +2,21 @@
 // Copyright the Tactus authors.
 #include "platform/controller/session_run.hpp"
 
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/controller.hpp"
 #include "platform/controller/failed_run.hpp"
+#include "platform/controller/guardian.hpp"
+#include "platform/controller/recorder.hpp"
+#include "platform/controller/server_topics.hpp"
+#include "platform/controller/trace_file.hpp"
 #include "platform/devices/udp/udp_device.hpp"
+#include "platform/loop/hand_tap.hpp"
 #include "platform/loop/machine.hpp"
 #include "platform/machine/allocation_counter.hpp"
 #include "platform/machine/posix/service_notify.hpp"
 #include "platform/machine/system_call_trap.hpp"
+#include "platform/scene/program_scene.hpp"
+#include "rt_core/scene/object_table.hpp"
 #include "transport/base/counted.hpp"
 #include "transport/inside_test.hpp"
 
@@ -47,7 +56,7 @@ FinishedRun empty_run(const Controller& controller, const Options& options)
 {
     const Duration period = options.period();
     const std::size_t tools = controller.tools().size();
-    return {.statistics = RunStatistics(tools, controller.frame().objects().capacity(),
+    return {.statistics = RunStatistics(tools, controller.object_table().capacity(),
                                         controller.models().size(), period),
             .supervisor_periods =
                 options.supervisor_periods.value_or(silent_periods(describe_machine())),
@@ -95,7 +104,7 @@ SessionRun::SessionRun(const RunParts& parts)
     , done_(empty_run(parts.controller, parts.options))
     , time_(parts.options.virtual_time)
     , governor_(make_governor(parts.options))
-    , mailbox_(parts.controller.poses(), parts.controller.frame().objects().capacity(),
+    , mailbox_(parts.controller.poses(), parts.controller.object_table().capacity(),
                nanoseconds(parts.controller.setup().pose_age_max_ns),
                parts.options.object_speed_m_per_s)
     , telemetry_(period_)
@@ -170,7 +179,7 @@ RefinementStateTap* SessionRun::make_front()
 {
     if (parts_.topics->shows_refinement_state())
     {
-        front_.emplace(parts_.controller.frame().pools().cache.pages);
+        front_.emplace(parts_.controller.page_pool());
     }
     return front_ ? &*front_ : nullptr;
 }

@@ -3,14 +3,9 @@
 #pragma once
 
 #include "platform/choices/messages.hpp"
-#include "platform/choices/run_options.hpp"
-#include "platform/controller/controller.hpp"
 #include "platform/controller/finished_run.hpp"
-#include "platform/controller/guardian.hpp"
-#include "platform/controller/recorder.hpp"
+#include "platform/controller/program_edits.hpp"
 #include "platform/controller/run_hooks.hpp"
-#include "platform/controller/server_topics.hpp"
-#include "platform/controller/trace_file.hpp"
 #include "platform/controller/transport_thread.hpp"
 #include "platform/loop/assertion_brake.hpp"
 #include "platform/loop/budget_governor.hpp"
@@ -23,24 +18,31 @@
 #include "platform/loop/telemetry_tap.hpp"
 #include "platform/machine/posix/posix_periodic_timer.hpp"
 #include "platform/machine/rt_thread.hpp"
-#include "platform/scene/program_scene.hpp"
+#include "platform/machine/time.hpp"
+#include "platform/recording/last_inputs.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "transport/base/refusal.hpp"
 #include "transport/log.hpp"
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace tactus::hrtc
 {
 
-/// Edits of a program's own models. All must outlive the run.
-struct ProgramEdits
-{
-    EditMailbox* mailbox{nullptr}; ///< Null if no model can be edited, or a server does it.
-    CutTap* cuts{nullptr};         ///< Null if no tool carves.
-};
+class Controller;
+class Guardian;
+class HandTap;
+class ProgramScene;
+class Recorder;
+class ServerTopics;
+class TraceFile;
+struct Options;
+struct SafetyEvent;
 
 /// Parts of one run. All must outlive the run.
 struct RunParts

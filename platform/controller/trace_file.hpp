@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/controller/run_results.hpp"
 #include "platform/controller/writer_thread.hpp"
 #include "platform/loop/trace_tap.hpp"
 #include "rt_core/base/result.hpp"
@@ -14,15 +15,6 @@
 
 namespace tactus::hrtc
 {
-
-/// Result of a trace, for the report.
-struct TraceResult
-{
-    std::uint64_t frames{0};
-    std::uint64_t rounds{0}; ///< Rounds of the chunk loader with requests or pieces.
-    std::uint64_t bytes{0};
-    std::uint64_t lost{0}; ///< Frames and rounds dropped because a queue was full.
-};
 
 /// Writes the times of frames, stages, queues and chunk loader in Chrome's trace format
 /// (docs/report.md), on a thread of ordinary priority.

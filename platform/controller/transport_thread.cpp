@@ -2,7 +2,11 @@
 // Copyright the Tactus authors.
 #include "platform/controller/transport_thread.hpp"
 
+#include "platform/controller/server_topics.hpp"
 #include "platform/machine/posix/posix_clock.hpp"
+#include "platform/scene/program_scene.hpp"
+#include "transport/chunk_loader.hpp"
+#include "transport/served_model.hpp"
 
 #include <chrono>
 #include <cstddef>

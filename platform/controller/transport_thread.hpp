@@ -2,20 +2,27 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/controller/server_topics.hpp"
 #include "platform/loop/model_marks.hpp"
 #include "platform/loop/trace_tap.hpp"
 #include "platform/machine/time.hpp"
-#include "platform/scene/program_scene.hpp"
-#include "transport/chunk_loader.hpp"
-#include "transport/served_model.hpp"
 
 #include <atomic>
 #include <thread>
 #include <vector>
 
+namespace tactus
+{
+
+class ChunkLoader;
+struct ServedModel;
+
+} // namespace tactus
+
 namespace tactus::hrtc
 {
+
+class ProgramScene;
+class ServerTopics;
 
 /// Rounds of the transport: each runs the chunk loader's round, a check of the servers, and the
 /// topics' step. The loss of a server is marked for its models; the loop continues with the

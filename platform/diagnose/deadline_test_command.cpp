@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/choices/messages.hpp"
+#include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/diagnose/commands.hpp"
 #include "platform/diagnose/deadline_report.hpp"

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/diagnose/self_check.hpp"
 
+#include "platform/controller/controller.hpp"
+#include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/devices/wrapped_device.hpp"
 #include "platform/diagnose/frame_repeater.hpp"

@@ -5,6 +5,8 @@
 /// loop on its real-time thread, and reports.
 
 #include "platform/choices/messages.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/hrtc/subcommands.hpp"

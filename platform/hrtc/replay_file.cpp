@@ -5,6 +5,7 @@
 #include "platform/export/frame_export.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
+#include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
 #include "transport/base/printable.hpp"
 

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/loop/assertion_brake.hpp"
 
+#include "platform/loop/haptic_loop.hpp"
 #include "rt_core/base/assert.hpp"
 #include "transport/base/exit_codes.hpp"
 

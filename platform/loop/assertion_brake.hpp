@@ -2,12 +2,12 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/loop/haptic_loop.hpp"
-
 #include <string_view>
 
 namespace tactus::hrtc
 {
+
+class HapticLoop;
 
 /// Installs the process's assertion handler; called once at start-up. While no AssertionBrake
 /// exists, a failed assertion is printed and ends the process with kExitFailed.

@@ -2,9 +2,23 @@
 // Copyright the Tactus authors.
 #include "platform/loop/haptic_loop.hpp"
 
+#include "platform/loop/budget_governor.hpp"
+#include "platform/loop/cut_tap.hpp"
+#include "platform/loop/edit_mailbox.hpp"
+#include "platform/loop/hand_tap.hpp"
+#include "platform/loop/model_marks.hpp"
+#include "platform/loop/refinement_state_tap.hpp"
+#include "platform/loop/scene_mailbox.hpp"
+#include "platform/loop/telemetry_tap.hpp"
+#include "platform/loop/trace_tap.hpp"
 #include "platform/machine/allocation_counter.hpp"
+#include "platform/machine/clock.hpp"
+#include "platform/machine/periodic_timer.hpp"
 #include "platform/machine/process_stop.hpp"
 #include "platform/machine/system_call_trap.hpp"
+#include "platform/recording/frame_tap.hpp"
+#include "platform/recording/last_inputs.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "rt_core/frame/list_touches.hpp"
 #include "rt_core/limits.hpp"
 

@@ -2,26 +2,25 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/loop/budget_governor.hpp"
-#include "platform/loop/cut_tap.hpp"
-#include "platform/loop/edit_mailbox.hpp"
-#include "platform/loop/hand_tap.hpp"
-#include "platform/loop/model_marks.hpp"
-#include "platform/loop/refinement_state_tap.hpp"
+#include "platform/loop/cycle_measures.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/loop/safety_log.hpp"
-#include "platform/loop/scene_mailbox.hpp"
-#include "platform/loop/telemetry_tap.hpp"
 #include "platform/loop/tool_port.hpp"
-#include "platform/loop/trace_tap.hpp"
-#include "platform/machine/clock.hpp"
 #include "platform/machine/heartbeat.hpp"
-#include "platform/machine/periodic_timer.hpp"
-#include "platform/recording/frame_tap.hpp"
-#include "platform/recording/last_inputs.hpp"
-#include "rt_core/frame/frame.hpp"
+#include "platform/machine/thread_usage.hpp"
+#include "platform/machine/time.hpp"
+#include "platform/recording/frame_encoder.hpp"
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/records/device_record.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/object_touch.hpp"
+#include "rt_core/records/safety.hpp"
+#include "rt_core/records/tool_force.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -29,8 +28,29 @@
 #include <thread>
 #include <vector>
 
+namespace tactus
+{
+
+class BudgetGovernor;
+class Clock;
+class EditMailbox;
+class Frame;
+class FrameTap;
+class LastInputs;
+class PeriodicTimer;
+class SceneMailbox;
+
+} // namespace tactus
+
 namespace tactus::hrtc
 {
+
+class CutTap;
+class HandTap;
+class ModelMarks;
+class RefinementStateTap;
+class TelemetryTap;
+class TraceTap;
 
 /// Parts of the loop. All must outlive the loop.
 struct LoopParts

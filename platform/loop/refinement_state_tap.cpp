@@ -2,6 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/loop/refinement_state_tap.hpp"
 
+#include "rt_core/frame/frame.hpp"
+#include "rt_core/scene/object_table.hpp"
+
 #include <algorithm>
 
 namespace tactus::hrtc

@@ -6,15 +6,30 @@
 #include "platform/loop/run_statistics.hpp"
 #include "platform/machine/time.hpp"
 #include "rt_core/base/static_vector.hpp"
-#include "rt_core/frame/frame.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/similarity.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
+#include "rt_core/records/region_ranking.hpp"
+#include "rt_core/records/safety.hpp"
+#include "rt_core/records/tool_force.hpp"
 #include "rt_core/spm/page_pool.hpp"
 #include "transport/front.hpp"
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+namespace tactus
+{
+
+class Frame;
+class ObjectTable;
+
+} // namespace tactus
 
 namespace tactus::hrtc
 {

@@ -3,9 +3,12 @@
 #pragma once
 
 #include "platform/recording/core_coding.hpp"
-#include "rt_core/frame/frame.hpp"
+#include "rt_core/frame/frame_setup.hpp"
+#include "rt_core/frame/model_capacities.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/object_pose.hpp"
+#include "rt_core/records/prediction.hpp"
 
 #include <array>
 #include <compare>

@@ -4,8 +4,7 @@
 
 #include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording.hpp"
-#include "rt_core/frame/frame.hpp"
-#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/base/result.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "transport/base/refusal.hpp"
 
@@ -16,6 +15,9 @@
 
 namespace tactus
 {
+
+class Frame;
+struct Kernels;
 
 /// First difference between a replay and its recording.
 struct ReplayDifference

@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/recording/replay_queues.hpp"
 
+#include "platform/recording/recording.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
 #include "rt_core/spm/index_page.hpp"
 

@@ -2,8 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/recording.hpp"
-#include "rt_core/frame/frame.hpp"
+#include "rt_core/spm/ids.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -14,6 +13,11 @@
 
 namespace tactus
 {
+
+class Frame;
+class Recording;
+struct QueueEvent;
+struct RecordedFrame;
 
 /// The transport thread's part in a replay: fills the recorded slots, links and frees in the
 /// recorded order, and puts into the queues the items that the frame took.

@@ -9,7 +9,10 @@
 #include "platform/loop/machine.hpp"
 #include "platform/machine/allocation_counter.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/forest/vertex_forest.hpp"
+#include "rt_core/scene/object_table.hpp"
 #include "transport/base/atomic_file.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
@@ -245,7 +248,7 @@ Json tools_of(const RunRecord& record)
 Json pairs_of(const RunRecord& record)
 {
     Json list = Json::array();
-    const ObjectTable& objects = record.controller.frame().objects();
+    const ObjectTable& objects = record.controller.object_table();
     const std::uint32_t places = objects.capacity();
     for (std::size_t i = 0; i < record.run.statistics.pairs.size(); ++i)
     {

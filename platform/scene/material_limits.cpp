@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/scene/material_limits.hpp"
 
+#include "platform/loop/tool_port.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "transport/material_ranges.hpp"
 #include "transport/material_text.hpp"

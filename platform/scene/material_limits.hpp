@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/loop/tool_port.hpp"
 #include "rt_core/records/material.hpp"
 
 #include <optional>
@@ -11,6 +10,8 @@
 
 namespace tactus::hrtc
 {
+
+struct ToolSetup;
 
 /// Least stiffness that is perceptible: 0.1 N at a penetration of 1 cm.
 inline constexpr double kSoftestFelt_n_per_m = 10.0;

@@ -3,11 +3,15 @@
 #include "platform/scene/scene_choice.hpp"
 
 #include "platform/choices/messages.hpp"
+#include "platform/choices/run_options.hpp"
+#include "platform/machine/clock.hpp"
 #include "platform/scene/object_pose.hpp"
 #include "platform/scene/scene_parts.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/content_hash.hpp"
+#include "transport/dds/dds_client.hpp"
+#include "transport/dds/scene_reader.hpp"
 
 #include <fmt/format.h>
 

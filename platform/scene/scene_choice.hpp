@@ -2,12 +2,11 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/run_options.hpp"
+#include "platform/choices/scene_materials.hpp"
+#include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
-#include "transport/dds/dds_client.hpp"
-#include "transport/dds/scene_reader.hpp"
-#include "transport/served_model.hpp"
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -15,8 +14,25 @@
 #include <string>
 #include <vector>
 
+namespace tactus
+{
+
+struct ServedModel;
+
+} // namespace tactus
+
+namespace tactus::dds
+{
+
+class DdsClient;
+class SceneReader;
+
+} // namespace tactus::dds
+
 namespace tactus::hrtc
 {
+
+struct Options;
 
 /// Identity of an object at its server.
 struct ServerObject

@@ -3,6 +3,10 @@
 #include "platform/world/local_edits.hpp"
 
 #include "platform/choices/messages.hpp"
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/controller/cut_sender.hpp"
+#include "platform/controller/program_edits.hpp"
 #include "rt_core/base/assert.hpp"
 #include "transport/store/model_store.hpp"
 
@@ -20,6 +24,13 @@ namespace
 constexpr std::chrono::milliseconds kStepPause{1};
 
 } // namespace
+
+LocalEdits::LocalEdits() = default;
+
+LocalEdits::~LocalEdits()
+{
+    stop();
+}
 
 Result<std::unique_ptr<LocalEdits>, Refusal> LocalEdits::create(const Controller& controller,
                                                                 const Options& options)

@@ -3,11 +3,9 @@
 #pragma once
 
 #include "host_tools/edit/edited_model.hpp"
-#include "platform/choices/run_options.hpp"
-#include "platform/controller/controller.hpp"
-#include "platform/controller/cut_sender.hpp"
-#include "platform/controller/session_run.hpp"
+#include "platform/choices/messages.hpp"
 #include "platform/loop/edit_mailbox.hpp"
+#include "rt_core/base/model_id.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/edit_content.hpp"
@@ -30,6 +28,11 @@
 namespace tactus::hrtc
 {
 
+class Controller;
+class CutSender;
+struct Options;
+struct ProgramEdits;
+
 /// Edits of a World's models of files, by calls of the program and by tools that carve. Any thread
 /// but the haptic one; callers wait for each other, the haptic thread never. Edits reach the frame
 /// in the order of the changes.
@@ -47,7 +50,7 @@ public:
     LocalEdits(const LocalEdits&) = delete;
     LocalEdits& operator=(const LocalEdits&) = delete;
     /// Ends the thread of start().
-    ~LocalEdits() { stop(); }
+    ~LocalEdits();
 
     /// What the haptic thread takes; it must not outlive this object.
     [[nodiscard]] ProgramEdits ports() noexcept;
@@ -66,7 +69,7 @@ public:
     void stop();
 
 private:
-    LocalEdits() = default;
+    LocalEdits();
 
     [[nodiscard]] Result<double, Refusal> try_change(std::size_t model, const Change& change);
     void carve_by_tools();

@@ -3,12 +3,18 @@
 #include "platform/world/world_core.hpp"
 
 #include "platform/choices/messages.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/controller/session.hpp"
+#include "platform/controller/session_run.hpp"
 #include "platform/loop/assertion_brake.hpp"
+#include "platform/loop/hand_tap.hpp"
 #include "platform/machine/posix/posix_clock.hpp"
 #include "platform/scene/material_limits.hpp"
+#include "platform/scene/program_scene.hpp"
 #include "platform/world/program_devices.hpp"
 #include "platform/world/world_values.hpp"
 #include "platform/world/world_words.hpp"
+#include "rt_core/scene/object_table.hpp"
 #include "transport/base/counted.hpp"
 
 #include <fmt/format.h>
@@ -256,7 +262,7 @@ Result<WorldObject, Refusal> WorldCore::place(std::size_t model, const ObjectOpt
         if (!added)
         {
             return failure(fmt::format("objects_max: {} are there already; use a larger value",
-                                       counted(controller.frame().objects().capacity(), "object")));
+                                       counted(controller.object_table().capacity(), "object")));
         }
         key = *added;
     }

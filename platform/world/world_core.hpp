@@ -2,9 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/controller/session.hpp"
-#include "platform/loop/hand_tap.hpp"
-#include "platform/scene/program_scene.hpp"
+#include "platform/controller/finished_run.hpp"
 #include "platform/world/local_edits.hpp"
 #include "platform/world/world.hpp"
 #include "platform/world/world_plan.hpp"
@@ -21,6 +19,15 @@
 #include <string_view>
 #include <thread>
 #include <vector>
+
+namespace tactus::hrtc
+{
+
+class HandTap;
+class ProgramScene;
+class Session;
+
+} // namespace tactus::hrtc
 
 namespace tactus
 {

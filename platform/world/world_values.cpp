@@ -3,6 +3,7 @@
 #include "platform/world/world_values.hpp"
 
 #include "platform/choices/messages.hpp"
+#include "platform/choices/run_options.hpp"
 #include "platform/choices/tool_words.hpp"
 #include "platform/loop/burr.hpp"
 #include "platform/scene/material_limits.hpp"

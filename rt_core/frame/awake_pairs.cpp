@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/small_sort.hpp"
+#include "rt_core/frame/model_set.hpp"
 
 #include <algorithm>
 #include <tuple>

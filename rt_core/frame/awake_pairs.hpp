@@ -5,9 +5,9 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/base/static_vector.hpp"
-#include "rt_core/frame/model_set.hpp"
 #include "rt_core/frame/pair.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/query/pair_front.hpp"
 
 #include <array>
 #include <cstdint>
@@ -15,6 +15,8 @@
 
 namespace tactus
 {
+
+class ModelSet;
 
 /// Pairs of tools and objects that are near each other, with their outputs and memory for further
 /// pairs. Haptic thread.

@@ -2,6 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/force_stage.hpp"
 
+#include "rt_core/frame/frame_parts.hpp"
+#include "rt_core/frame/narrow_phase.hpp"
+
 #include <algorithm>
 
 namespace tactus

@@ -3,11 +3,13 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
-#include "rt_core/frame/narrow_phase.hpp"
 
 namespace tactus
 {
+
+class NarrowPhase;
+struct FrameAccount;
+struct FrameParts;
 
 /// Last stage of a frame: moves each present tool that does not rest towards its device and
 /// computes its force, into ToolSet::outputs(). If the queries prove too little for the whole way,

@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/frame/model.hpp"
-#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/frame/model_capacities.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_variant.hpp"
+#include "rt_core/records/object_pose.hpp"
 #include "rt_core/records/prediction.hpp"
 
 #include <cstddef>
@@ -16,6 +16,8 @@
 // Usable on any thread: that which calls Frame::start(). No call waits or allocates.
 namespace tactus
 {
+
+struct Kernels;
 
 /// Model of a frame: bytes of its header and base mesh, and its pool sizes.
 struct ModelSource

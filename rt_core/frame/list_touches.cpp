@@ -2,6 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/list_touches.hpp"
 
+#include "rt_core/frame/frame.hpp"
+#include "rt_core/geometry/object_speed_limit.hpp"
+
 #include <algorithm>
 
 namespace tactus

@@ -3,14 +3,16 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame.hpp"
-#include "rt_core/geometry/object_speed_limit.hpp"
 #include "rt_core/records/object_touch.hpp"
 
 #include <span>
 
 namespace tactus
 {
+
+class Frame;
+class ObjectSpeedLimit;
+struct PairOutput;
 
 /// Lists the objects that tools may touch, as of the last frame, objects in reach first. An object
 /// counts if it may be touched within ObjectSpeedLimit::kPatience_s, or by a displacement that is

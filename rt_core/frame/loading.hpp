@@ -3,7 +3,6 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
 #include "rt_core/frame/model_life.hpp"
 #include "rt_core/records/region_ranking.hpp"
 
@@ -12,6 +11,11 @@
 
 namespace tactus
 {
+
+class Pair;
+struct FrameAccount;
+struct FrameParts;
+struct FrameSetup;
 
 /// First stage of a frame: ranks the regions that tools may touch, adopts arrivals, loads and
 /// removes streamed models, and requests missing chunks of the regions. Haptic thread.

@@ -3,9 +3,11 @@
 #include "rt_core/frame/mesh_pair.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/frame/model.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
+#include "rt_core/predict/region_predictor.hpp"
 
 #include <algorithm>
 

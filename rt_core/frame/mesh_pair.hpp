@@ -2,19 +2,33 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/model_id.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/model.hpp"
-#include "rt_core/predict/region_predictor.hpp"
+#include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/query/mesh_query.hpp"
+#include "rt_core/query/other_surface.hpp"
+#include "rt_core/query/unfinished_search.hpp"
+#include "rt_core/records/contact.hpp"
+#include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/mesh_report.hpp"
+#include "rt_core/records/prediction.hpp"
+#include "rt_core/records/region_ranking.hpp"
+#include "rt_core/records/work_counters.hpp"
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/scene/region_of_interest.hpp"
+#include "rt_core/spm/error_code.hpp"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace tactus
 {
+
+class RegionPredictor;
+struct Model;
+struct PairFront;
 
 /// Additional data of a pair whose tool is a mesh: each of the two surfaces is refined by its
 /// distance from the other.

@@ -3,6 +3,8 @@
 #include "rt_core/frame/model_life.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/frame/model_set.hpp"
+#include "rt_core/frame/pair.hpp"
 #include "rt_core/limits.hpp"
 
 #include <algorithm>

@@ -2,9 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/model_id.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/model_set.hpp"
-#include "rt_core/frame/pair.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,6 +11,11 @@
 
 namespace tactus
 {
+
+class ModelSet;
+class Pair;
+struct Model;
+struct WorkCounters;
 
 /// Loads and removes streamed models, which start with the header alone.
 ///

@@ -4,7 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
+#include "rt_core/frame/pair.hpp"
 #include "rt_core/limits.hpp"
 
 #include <array>
@@ -12,6 +12,10 @@
 
 namespace tactus
 {
+
+struct FrameAccount;
+struct FrameParts;
+struct FrameSetup;
 
 /// Query stage of a frame: finds each pair's distance, and the surface that its tool may touch.
 ///

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/neighbours.hpp"
 
+#include "rt_core/frame/frame_parts.hpp"
 #include "rt_core/geometry/object_speed_limit.hpp"
 
 #include <algorithm>

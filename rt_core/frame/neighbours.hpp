@@ -4,7 +4,6 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/scene/broad_phase.hpp"
@@ -15,6 +14,11 @@
 
 namespace tactus
 {
+
+struct FrameAccount;
+struct FrameParts;
+struct FrameSetup;
+struct ObjectPose;
 
 /// Pairs each tool with the objects near it, nearest first, while pairs are free. The tool keeps a
 /// proven clearance from all other objects (ToolStatus::clear_m).

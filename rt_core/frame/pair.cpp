@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/pair.hpp"
 
+#include "rt_core/frame/model.hpp"
 #include "rt_core/query/contact_report.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/core_query.hpp"

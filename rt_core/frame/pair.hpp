@@ -5,25 +5,35 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
+#include "rt_core/base/static_vector.hpp"
 #include "rt_core/force/material_blend.hpp"
 #include "rt_core/frame/mesh_pair.hpp"
-#include "rt_core/frame/model.hpp"
 #include "rt_core/frame/tool.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/predict/region_predictor.hpp"
-#include "rt_core/query/block_search.hpp"
+#include "rt_core/query/pair_front.hpp"
+#include "rt_core/query/query_memory.hpp"
 #include "rt_core/query/surface_query.hpp"
+#include "rt_core/records/contact.hpp"
+#include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/frame_variant.hpp"
+#include "rt_core/records/local_surface.hpp"
+#include "rt_core/records/region_ranking.hpp"
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/refine/surface_tolerance.hpp"
 #include "rt_core/scene/object_table.hpp"
 #include "rt_core/scene/region_of_interest.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 
 namespace tactus
 {
+
+struct Model;
 
 /// Common settings of all pairs of a frame.
 struct PairRules

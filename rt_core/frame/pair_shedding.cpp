@@ -3,6 +3,7 @@
 #include "rt_core/frame/pair_shedding.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/frame/pair.hpp"
 
 #include <algorithm>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/pair.hpp"
 #include "rt_core/records/priority.hpp"
 
 #include <cstdint>
@@ -11,6 +10,8 @@
 
 namespace tactus
 {
+
+class Pair;
 
 /// Sheds pairs: those of lowest priority are not loaded or refined while pairs of higher priority
 /// lack memory.

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
+#include "rt_core/frame/pair.hpp"
+#include "rt_core/refine/refine_question.hpp"
+#include "rt_core/refine/refiner.hpp"
 #include "rt_core/refine/work_pace.hpp"
 
 #include <array>
@@ -12,6 +14,11 @@
 
 namespace tactus
 {
+
+class ModelSet;
+struct FrameAccount;
+struct FrameParts;
+struct ModelSlot;
 
 /// Second stage of a frame: gathers the pairs' requests to their models, merges records that no
 /// request needs, and shares the frame's splits among waiting requests (SplitShares). Merges and

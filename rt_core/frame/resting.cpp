@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "rt_core/frame/resting.hpp"
 
+#include "rt_core/frame/frame_parts.hpp"
+
 #include <algorithm>
 
 namespace tactus

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
 
 namespace tactus
 {
+
+struct FrameAccount;
+struct FrameParts;
 
 /// Skips work that would only repeat the last frame's: a whole frame, a tool's answer, or the
 /// update of a model. Haptic thread.

@@ -3,6 +3,8 @@
 #include "rt_core/frame/scene_changes.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/frame/frame_parts.hpp"
+#include "rt_core/frame/neighbours.hpp"
 
 #include <algorithm>
 

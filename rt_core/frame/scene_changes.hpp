@@ -4,8 +4,7 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
-#include "rt_core/frame/neighbours.hpp"
+#include "rt_core/records/scene_change.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -13,6 +12,11 @@
 
 namespace tactus
 {
+
+class Neighbours;
+struct FrameParts;
+struct FrameSetup;
+struct SceneOutput;
 
 /// Applies the changes of the scene before any stage, so that the whole frame sees one scene. A
 /// change that can't be made is refused and changes nothing. Haptic thread.

@@ -3,6 +3,7 @@
 #include "rt_core/frame/surface_edits.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/frame/frame_parts.hpp"
 
 #include <algorithm>
 

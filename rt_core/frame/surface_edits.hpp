@@ -3,13 +3,17 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/frame_parts.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/records/surface_edit.hpp"
 
 #include <span>
 
 namespace tactus
 {
+
+struct FrameAccount;
+struct FrameParts;
 
 /// Applies the edits of models' surfaces before any stage, so that the whole frame sees one
 /// surface. A refused edit changes nothing. Haptic thread.

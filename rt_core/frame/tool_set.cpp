@@ -3,6 +3,8 @@
 #include "rt_core/frame/tool_set.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/frame/awake_pairs.hpp"
+#include "rt_core/frame/frame_setup.hpp"
 
 #include <algorithm>
 

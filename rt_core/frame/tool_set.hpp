@@ -4,8 +4,6 @@
 
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/frame/awake_pairs.hpp"
-#include "rt_core/frame/frame_setup.hpp"
 #include "rt_core/frame/tool.hpp"
 #include "rt_core/limits.hpp"
 
@@ -15,6 +13,9 @@
 
 namespace tactus
 {
+
+class AwakePairs;
+struct FrameSetup;
 
 /// Data of a tool that stages of a frame pass to later stages.
 struct ToolStatus

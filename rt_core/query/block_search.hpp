@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/infinity.hpp"
+#include "rt_core/query/query_memory.hpp"
 #include "rt_core/query/tree_walk.hpp"
 #include "rt_core/records/local_surface.hpp"
 
@@ -11,13 +12,6 @@
 
 namespace tactus
 {
-
-/// Memory of a pair of tool and object between queries: where the next search begins.
-struct QueryMemory
-{
-    std::uint32_t block{kNoNode}; ///< Block of the last nearest face; any value is safe.
-    float limit{0.0F}; ///< Last upper bound on a point's distance, in quanta; any value is safe.
-};
 
 /// Passes to `search` the blocks that may matter: the remembered block first, then by distance.
 ///

@@ -2,11 +2,13 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/aabb.hpp"
-#include "rt_core/query/other_surface.hpp"
+#include "rt_core/query/mesh_placement.hpp"
 
 #include <array>
+#include <cstddef>
 
 namespace tactus
 {

@@ -2,11 +2,14 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/contact_report.hpp"
 
+#include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/assert.hpp"
+#include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/arc_tangent.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/convex_contact.hpp"
+#include "rt_core/records/local_surface.hpp"
 
 #include <algorithm>
 #include <cmath>

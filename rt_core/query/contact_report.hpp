@@ -2,14 +2,15 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/records/contact.hpp"
-#include "rt_core/records/local_surface.hpp"
 
 namespace tactus
 {
+
+class AbTree;
+class PlacedCore;
+struct LocalSurface;
 
 /// Reports the contacts of a tool with a gathered surface, and normal and side at the nearest
 /// point, in the model's frame. The same exact faces give the same bits, in any order of `surface`.

@@ -5,6 +5,7 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/separations.hpp"
 #include "rt_core/math/infinity.hpp"
+#include "rt_core/query/block_search.hpp"
 #include "rt_core/query/nearest_triangles.hpp"
 #include "rt_core/query/probe.hpp"
 

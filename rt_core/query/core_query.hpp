@@ -2,15 +2,20 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/geometry/placed_core.hpp"
+#include "rt_core/base/realtime.hpp"
 #include "rt_core/limits.hpp"
-#include "rt_core/query/block_search.hpp"
 #include "rt_core/query/surface_query.hpp"
+#include "rt_core/spm/error_code.hpp"
 
 #include <cstdint>
 
 namespace tactus
 {
+
+class AbTree;
+class PlacedCore;
+struct QueryMemory;
+struct WalkBudget;
 
 /// gather_surface() for any core: answers the distance question and collects the triangles of the
 /// surface within `reach_m` of the core, in one traversal. A point runs the code of

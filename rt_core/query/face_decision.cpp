@@ -8,6 +8,7 @@
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/contact_set.hpp"
+#include "rt_core/query/placed_blocks.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -15,6 +15,10 @@
 namespace tactus
 {
 
+class AbTree;
+struct BlockGeometry;
+struct PlacedBlock;
+
 /// Decides intersection and distance of near face pairs, and reports them to MeshFindings: in
 /// single precision with proven bounds first, and exactly for open cases that matter. Haptic
 /// thread. Valid for one query.

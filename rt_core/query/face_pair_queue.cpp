@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
+#include "rt_core/query/placed_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,18 +2,20 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/abtree/block.hpp"
 #include "rt_core/abtree/node.hpp"
+#include "rt_core/base/assert.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/triangle.hpp"
-#include "rt_core/query/placed_blocks.hpp"
 
 #include <array>
 #include <cstdint>
 
 namespace tactus
 {
+
+struct BlockGeometry;
+struct PlacedBlock;
 
 /// A face of the tool and one of the object, as lanes of blocks in their trees.
 struct FacePair

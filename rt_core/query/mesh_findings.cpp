@@ -5,6 +5,7 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/geometry/closest_points.hpp"
 #include "rt_core/math/rounding.hpp"
+#include "rt_core/query/block_search.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/surface_query.hpp"
 

@@ -9,6 +9,7 @@
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/face_decision.hpp"
 #include "rt_core/query/mesh_findings.hpp"
+#include "rt_core/query/other_surface.hpp"
 #include "rt_core/query/pair_walk.hpp"
 #include "rt_core/query/placed_blocks.hpp"
 #include "rt_core/query/probe.hpp"

@@ -4,18 +4,23 @@
 
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/query/face_pair_queue.hpp"
-#include "rt_core/query/other_surface.hpp"
-#include "rt_core/query/pair_front.hpp"
+#include "rt_core/query/mesh_placement.hpp"
 #include "rt_core/query/surface_query.hpp"
 #include "rt_core/records/contact.hpp"
 #include "rt_core/records/local_surface.hpp"
 #include "rt_core/records/mesh_report.hpp"
+#include "rt_core/spm/error_code.hpp"
 
 #include <cstdint>
 #include <limits>
 
 namespace tactus
 {
+
+class AbTree;
+class OtherSurface;
+struct PairFront;
+struct WalkBudget;
 
 /// Value of MeshQuestion::enough that requests all meeting faces.
 inline constexpr std::uint32_t kAllMeetingFaces = std::numeric_limits<std::uint32_t>::max();

@@ -4,6 +4,8 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
+#include "rt_core/query/other_surface.hpp"
+#include "rt_core/query/unfinished_search.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -2,10 +2,18 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/abtree/block.hpp"
+#include "rt_core/base/assert.hpp"
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/query/face_pair_queue.hpp"
 #include "rt_core/query/pair_walk.hpp"
 #include "rt_core/query/placed_blocks.hpp"
+#include "rt_core/spm/error_code.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -14,24 +22,16 @@
 namespace tactus
 {
 
+class AbTree;
+class OtherSurface;
+struct UnfinishedSearch;
+
 /// Faces that are in no tree yet, as lanes of a separate block.
 struct LooseFaces
 {
     const BlockGeometry& geometry;
     std::uint32_t lanes{0};                     ///< Lanes in use, one bit each; at least one.
     std::array<double, kBlockFaces> errors_m{}; ///< Errors of the faces in these lanes, in metres.
-};
-
-/// Unvisited part of a search that its budget cut, for the next search of the same two models. It
-/// is invalid after a change of either tree. 4 KiB.
-struct UnfinishedSearch
-{
-    PairWalk::LeftPairs left; ///< Unvisited pairs; empty: nothing to continue.
-    std::uint64_t own_change{0};
-    std::uint64_t other_change{0};
-    double bound_m{0.0};   ///< Bound of the search: visited faces that were not found are farther.
-    double nearest_m{0.0}; ///< Lower bound on the distance of faces that were found or left out.
-    double moved_m{0.0};   ///< Motion of the other surface since the search.
 };
 
 /// Search for a model's active coarse faces near another surface whose errors exceed a tolerance,

@@ -8,6 +8,7 @@
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
+#include "rt_core/query/tree_walk.hpp"
 
 #include <algorithm>
 #include <cmath>

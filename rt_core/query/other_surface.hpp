@@ -2,33 +2,25 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/abtree/node.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/geometry/placed_core.hpp"
-#include "rt_core/query/block_search.hpp"
-#include "rt_core/query/tree_walk.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/geometry/shapes.hpp"
+#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/triangle.hpp"
+#include "rt_core/query/mesh_placement.hpp"
+#include "rt_core/query/query_memory.hpp"
+#include "rt_core/query/walk_budget.hpp"
 
+#include <cstdint>
+#include <span>
 #include <utility>
 
 namespace tactus
 {
 
-/// Placement of a model's frame in another model's: there = origin + scale x rotation x (here +
-/// offset).
-struct MeshPlacement
-{
-    Similarity place;
-    Vec3 offset_m{0.0, 0.0, 0.0};
-
-    [[nodiscard]] Vec3 local_to_world(const Vec3& here_m) const noexcept
-    {
-        return place.local_to_world(here_m + offset_m);
-    }
-    /// The inverse placement.
-    [[nodiscard]] MeshPlacement inverse() const noexcept TACTUS_NONBLOCKING;
-    /// Bound on the rounding error of local_to_world(), in metres of the other frame.
-    [[nodiscard]] double rounding_m(const Vec3& here_m) const noexcept TACTUS_NONBLOCKING;
-};
+class AbTree;
 
 /// Surface of another model as seen from a model's frame, for refinement near an object and for
 /// queries with a mesh tool. Lengths are in the viewing model's frame. Valid for one frame. The

@@ -2,9 +2,10 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/abtree/node.hpp"
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/query/other_surface.hpp"
+#include "rt_core/geometry/shapes.hpp"
+#include "rt_core/query/mesh_placement.hpp"
 #include "rt_core/spm/error_code.hpp"
 
 #include <array>

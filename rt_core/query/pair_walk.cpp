@@ -2,7 +2,9 @@
 // Copyright the Tactus authors.
 #include "rt_core/query/pair_walk.hpp"
 
+#include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/assert.hpp"
+#include "rt_core/query/other_surface.hpp"
 #include "rt_core/query/probe.hpp"
 
 #include <algorithm>

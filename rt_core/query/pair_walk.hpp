@@ -2,14 +2,26 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/abtree/node.hpp"
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/base/static_vector.hpp"
+#include "rt_core/kernels/kernels.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/math/aabb.hpp"
 #include "rt_core/query/box_view.hpp"
+#include "rt_core/query/mesh_placement.hpp"
 #include "rt_core/query/pair_front.hpp"
-#include "rt_core/query/tree_walk.hpp"
+#include "rt_core/spm/error_code.hpp"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 namespace tactus
 {
+
+class AbTree;
+struct WalkBudget;
 
 /// Views of two models' boxes in each other's frames. Lengths are in quanta of the object.
 class MeshViews

@@ -4,6 +4,7 @@
 
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/rounding.hpp"
+#include "rt_core/query/pair_walk.hpp"
 
 #include <algorithm>
 #include <array>

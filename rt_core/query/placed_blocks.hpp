@@ -2,13 +2,21 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/abtree/ab_tree.hpp"
+#include "rt_core/base/realtime.hpp"
+#include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/triangle.hpp"
-#include "rt_core/query/pair_walk.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "rt_core/spm/error_code.hpp"
 
 #include <array>
+#include <cstdint>
 
 namespace tactus
 {
+
+class MeshViews;
+struct MeshPlacement;
 
 /// Factor that makes the rounded sum of two lengths an upper bound.
 inline constexpr float kSumRoundedUp = 1.0F + 0x1p-22F;

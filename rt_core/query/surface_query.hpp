@@ -3,13 +3,18 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/query/block_search.hpp"
+#include "rt_core/math/vec3.hpp"
 #include "rt_core/records/local_surface.hpp"
+#include "rt_core/spm/error_code.hpp"
 
 #include <cstdint>
 
 namespace tactus
 {
+
+class AbTree;
+struct QueryMemory;
+struct WalkBudget;
 
 /// Share of the distance that is proven if no exact face is in reach.
 enum class ProofShare : std::uint8_t

@@ -3,6 +3,8 @@
 #include "rt_core/refine/coarsener.hpp"
 
 #include "rt_core/base/assert.hpp"
+#include "rt_core/forest/vertex_forest.hpp"
+#include "rt_core/query/other_surface.hpp"
 #include "rt_core/spm/error_code.hpp"
 
 #include <algorithm>

@@ -3,11 +3,12 @@
 #pragma once
 
 #include "rt_core/base/realtime.hpp"
-#include "rt_core/forest/vertex_forest.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/refine/refine_scratch.hpp"
+#include "rt_core/spm/ids.hpp"
+#include "rt_core/spm/page_table.hpp"
 
 #include <array>
 #include <cstdint>
@@ -15,6 +16,8 @@
 
 namespace tactus
 {
+
+class VertexForest;
 
 /// Merges the records that the tools have left behind: the first phase of a refinement.
 ///

@@ -2,10 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/base/model_id.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "rt_core/query/near_faces.hpp"
-#include "rt_core/query/other_surface.hpp"
 #include "rt_core/records/priority.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "rt_core/spm/error_code.hpp"
@@ -17,6 +16,9 @@
 
 namespace tactus
 {
+
+class OtherSurface;
+struct UnfinishedSearch;
 
 /// State of one question, kept from frame to frame.
 struct RefineMemory

@@ -3,7 +3,10 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/limits.hpp"
+#include "rt_core/records/changed_face.hpp"
 #include "rt_core/refine/refine_question.hpp"
+#include "rt_core/spm/ids.hpp"
 #include "rt_core/spm/page_table.hpp"
 
 #include <array>

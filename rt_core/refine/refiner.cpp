@@ -7,7 +7,10 @@
 #include "rt_core/math/rounding.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/query/near_faces.hpp"
+#include "rt_core/query/other_surface.hpp"
 #include "rt_core/query/probe.hpp"
+#include "rt_core/query/tree_walk.hpp"
+#include "rt_core/query/unfinished_search.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,16 +2,16 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "rt_core/abtree/ab_tree.hpp"
 #include "rt_core/base/realtime.hpp"
 #include "rt_core/forest/vertex_forest.hpp"
-#include "rt_core/query/near_faces.hpp"
-#include "rt_core/query/tree_walk.hpp"
+#include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "rt_core/refine/coarsener.hpp"
 #include "rt_core/refine/refine_question.hpp"
 #include "rt_core/refine/refine_scratch.hpp"
+#include "rt_core/spm/ids.hpp"
+#include "rt_core/spm/page_table.hpp"
 
 #include <array>
 #include <cstdint>
@@ -19,6 +19,11 @@
 
 namespace tactus
 {
+
+class AbTree;
+struct LooseFaces;
+struct UnfinishedSearch;
+struct WalkBudget;
 
 /// Upper limits on the frame's total splits (WorkCounters::splits) while a request is served.
 struct SplitLimits

@@ -3,6 +3,7 @@
 
 /// The whole programs spm_publish and hrtc on loopback and across two networks with a delay.
 
+#include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
 #include "tests/bench/published.hpp"
 #include "tests/bench/stream_cases.hpp"

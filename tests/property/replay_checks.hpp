@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
 
 #include <gtest/gtest.h>

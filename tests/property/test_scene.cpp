@@ -5,6 +5,7 @@
 /// hold the distance found by trying all objects.
 
 #include "rt_core/frame/list_touches.hpp"
+#include "rt_core/geometry/object_speed_limit.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/random.hpp"

@@ -5,8 +5,8 @@
 #include "platform/devices/brake_latch.hpp"
 #include "platform/devices/device_frame.hpp"
 #include "platform/devices/haptic_device.hpp"
+#include "platform/devices/remote/remote_times.hpp"
 #include "platform/machine/clock.hpp"
-#include "platform/machine/rt_thread.hpp"
 #include "rt_core/base/mailbox.hpp"
 
 #include <atomic>
@@ -16,27 +16,6 @@
 
 namespace tactus
 {
-
-/// Times after which a device counts as disconnected and a force as expired.
-struct RemoteTimes
-{
-    static constexpr Duration kMin{1'000'000};
-    static constexpr Duration kMax{60'000'000'000};
-
-    /// Time without a sample after which the device is not connected. The default equals
-    /// kSampleHold_s, for which a frame uses an old sample.
-    Duration silence{milliseconds(20)};
-    /// Time after a write at which the force ends: the watchdog against a haptic thread that hangs.
-    Duration force_hold{milliseconds(20)};
-};
-
-/// Options of an I/O thread: priority 79, one below the haptic thread's default. The thread also
-/// runs without real-time rights.
-[[nodiscard]] RtThreadOptions io_thread_options();
-
-/// Returns the fault in one line; empty if both times are in [RemoteTimes::kMin,
-/// RemoteTimes::kMax].
-[[nodiscard]] std::string find_bad_time(const RemoteTimes& times);
 
 /// The I/O thread's reading of a device, in the device's coordinates.
 struct DeviceReading

@@ -5,7 +5,9 @@
 /// hashes of every frame; one line for each file. Exits 0 if all agree, 1 if a frame differs, 2 if
 /// a file is refused, 3 for wrong usage.
 
+#include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
+#include "rt_core/kernels/kernels.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -8,6 +8,7 @@
 /// recording.
 
 #include "host_tools/encode/extract.hpp"
+#include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/tool_oracle.hpp"

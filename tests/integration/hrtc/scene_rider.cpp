@@ -6,10 +6,13 @@
 /// less under any load. Prints as JSON how often it was blocked by a model that was not resident:
 /// because it was requested too late, or because the machine delivered it late.
 
+#include "platform/choices/run_options.hpp"
 #include "platform/controller/controller.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
 #include "platform/scene/scene_choice.hpp"
+#include "rt_core/frame/frame.hpp"
+#include "transport/chunk_loader.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/scene_reader.hpp"
 

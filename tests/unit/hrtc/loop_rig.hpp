@@ -7,6 +7,10 @@
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/devices/simulated/simulated_periodic_timer.hpp"
 #include "platform/loop/haptic_loop.hpp"
+#include "platform/loop/model_marks.hpp"
+#include "platform/loop/refinement_state_tap.hpp"
+#include "platform/loop/scene_mailbox.hpp"
+#include "platform/loop/telemetry_tap.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/unit/hrtc/period.hpp"
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/controller/controller.hpp"
+#include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/devices/wrapped_device.hpp"
 #include "platform/hrtc/replay_file.hpp"
 #include "platform/loop/assertion_brake.hpp"
+#include "platform/loop/tool_port.hpp"
 #include "platform/program/run_program.hpp"
 #include "platform/recording/recording.hpp"
 #include "platform/recording/replay.hpp"

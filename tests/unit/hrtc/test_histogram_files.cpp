@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/controller/histogram_folder.hpp"
 #include "platform/report/report.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

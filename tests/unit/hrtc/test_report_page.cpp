@@ -3,6 +3,7 @@
 #include "platform/options/options.hpp"
 #include "platform/plot/markup.hpp"
 #include "platform/report/report.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "tests/shared/count_of.hpp"
 
 #include <gtest/gtest.h>

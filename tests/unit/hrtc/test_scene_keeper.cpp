@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/choices/run_options.hpp"
 #include "platform/controller/controller.hpp"
 #include "platform/scene/scene_keeper.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
+#include "rt_core/frame/frame.hpp"
 #include "tests/shared/test_model.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
 #include "transport/dds/dds_client.hpp"

@@ -5,8 +5,10 @@
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/devices/simulated/simulated_periodic_timer.hpp"
 #include "platform/devices/wrapped_device.hpp"
+#include "platform/loop/budget_governor.hpp"
 #include "platform/loop/haptic_loop.hpp"
 #include "platform/loop/supervisor.hpp"
+#include "platform/recording/frame_tap.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/unit/hrtc/period.hpp"
 

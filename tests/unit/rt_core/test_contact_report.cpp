@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "rt_core/geometry/placed_core.hpp"
 #include "rt_core/query/contact_report.hpp"
 #include "rt_core/query/contact_set.hpp"
 #include "rt_core/query/convex_contact.hpp"
 #include "rt_core/query/core_query.hpp"
+#include "rt_core/query/query_memory.hpp"
+#include "rt_core/query/walk_budget.hpp"
 #include "tests/shared/owned_surface.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"

@@ -5,6 +5,7 @@
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
 #include "rt_core/query/near_faces.hpp"
+#include "rt_core/query/unfinished_search.hpp"
 #include "tests/unit/rt_core/mesh_support.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"

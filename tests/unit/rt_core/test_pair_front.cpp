@@ -8,6 +8,7 @@
 #include "rt_core/geometry/crossing.hpp"
 #include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
+#include "rt_core/query/pair_front.hpp"
 #include "tests/unit/rt_core/mesh_support.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"

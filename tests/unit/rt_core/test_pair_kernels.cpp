@@ -5,6 +5,7 @@
 #include "rt_core/query/box_view.hpp"
 #include "rt_core/query/face_pair_queue.hpp"
 #include "rt_core/query/pair_walk.hpp"
+#include "rt_core/query/placed_blocks.hpp"
 #include "tests/unit/rt_core/kernel_scenes.hpp"
 
 #include <Eigen/Geometry>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/recording/frame_decoder.hpp"
 #include "platform/recording/recording.hpp"

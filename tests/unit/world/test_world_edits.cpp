@@ -2,6 +2,9 @@
 // Copyright the Tactus authors.
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/spm_publish/edited_models.hpp"
+#include "platform/choices/run_options.hpp"
+#include "platform/controller/controller.hpp"
+#include "platform/controller/program_edits.hpp"
 #include "platform/world/local_edits.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
