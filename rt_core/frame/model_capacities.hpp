@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+// Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
 {
 

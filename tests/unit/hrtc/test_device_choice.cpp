@@ -4,6 +4,7 @@
 #include "platform/choices/tool_words.hpp"
 #include "platform/devices/device_force.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
+#include "platform/devices/simulated/replay_device.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
