@@ -362,8 +362,7 @@ TACTUS_CALL tactus_result tactus_world_make(const tactus_world_options* options,
                                             tactus_world** world, tactus_error* error);
 TACTUS_CALL void tactus_world_end(tactus_world* world);
 
-/* Adds an object. After a refused one before the first frame the world never begins: start and step
- * return the same line. A later refusal changes nothing. */
+/* Adds an object. */
 TACTUS_CALL tactus_result tactus_world_add(tactus_world* world, const tactus_world_object* object,
                                            tactus_handle* handle, tactus_error* error);
 /* Adds a hand before the first frame: a tool as for --tool, such as "sphere:0.002", and a device as

@@ -504,6 +504,8 @@ def check_worlds(scratch):
     refuses(tactus.Error, "tool: 'ball:1'", lambda: tactus.World().hand("ball:1"))
     refuses(tactus.Error, "the World has no hand", lambda: tactus.World().start())
     world = tactus.World(objects_max=1)
+    refuses(tactus.Error, "nowhere.spm: ", lambda: world.add("nowhere.spm"))
+    refuses(tactus.Error, "tool: 'ball:1'", lambda: world.hand("ball:1"))
     part = world.add("torus.spm")
     hand = world.hand()
     refuses(ValueError, "rotation: shape (2, 2)",

@@ -72,6 +72,9 @@ int main(int argc, char** argv)
     options.size = sizeof(options);
     need(tactus_world_make(&options, &world, &error) == TACTUS_DONE, "make");
     need(tactus_world_make(&options, &other, &error) == TACTUS_DONE, "make another one");
+    part.text = "nowhere.spm";
+    refuses(TACTUS_REFUSED, tactus_world_add(world, &part, &object, &error), "nowhere.spm: ");
+    part.text = argv[1];
     need(tactus_world_add(world, &part, &object, &error) == TACTUS_DONE, "add a file");
     refuses(TACTUS_BAD_ARGUMENT, tactus_world_add(world, &solid, &second, &error),
             "object.edit_faces: 262145; 0 to 262144 is allowed");
@@ -156,9 +159,10 @@ int main(int argc, char** argv)
     refuses(TACTUS_REFUSED, tactus_world_hold(world, hand, above_m, NULL, &error), "has ended");
     part.text = "carved.spm";
     need(tactus_world_add(other, &part, &object, &error) == TACTUS_DONE, "add the saved model");
-    part.text = "nowhere.spm";
-    refuses(TACTUS_REFUSED, tactus_world_add(other, &part, &object, &error), "nowhere.spm: ");
-    refuses(TACTUS_REFUSED, tactus_world_start(other, &error), "nowhere.spm: ");
+    refuses(TACTUS_REFUSED, tactus_world_add_hand(other, "ball:1", NULL, NULL, &hand, &error),
+            "tool: 'ball:1'");
+    refuses(TACTUS_REFUSED, tactus_world_start(other, &error),
+            "start(): the World has no hand; refused: tool: 'ball:1'");
     tactus_world_end(world);
     tactus_world_end(other);
     tactus_world_end(NULL);
