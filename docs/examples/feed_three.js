@@ -3,10 +3,21 @@
 // spm_view --pages FOLDER, with this file and feed_three.html in it, then open /pages/feed_three.html.
 "use strict";
 
+const words = document.getElementById("words");
 const renderer = new THREE.WebGLRenderer({antialias: true});
+renderer.setClearColor(0xf2f2f0);
 document.body.append(renderer.domElement);
-renderer.setSize(window.innerWidth, window.innerHeight);
-const camera = new THREE.PerspectiveCamera(45, window.innerWidth / window.innerHeight, 0.001, 10);
+document.body.style.margin = 0; // Styles within the HTML do not apply.
+renderer.domElement.style.display = "block";
+words.style.cssText = "position: absolute; margin: 12px; font: 16px sans-serif";
+const camera = new THREE.PerspectiveCamera(45, 1, 0.001, 10);
+function fit_window() {
+  renderer.setSize(window.innerWidth, window.innerHeight);
+  camera.aspect = window.innerWidth / window.innerHeight;
+  camera.updateProjectionMatrix();
+}
+window.addEventListener("resize", fit_window);
+fit_window();
 camera.up.set(0, 0, 1);
 camera.position.set(0.2, -0.3, 0.2);
 camera.lookAt(0, 0, 0);
@@ -20,7 +31,8 @@ scene.add(light);
 const mesh_of = (object) => new THREE.AxesHelper(0.03);
 const ball_of = (tool) => new THREE.Mesh(new THREE.SphereGeometry(tool.radius_m || 0.002, 24, 16),
                                          new THREE.MeshPhongMaterial({color: 0xcc5522}));
-const arrow_of = () => new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 0.01);
+const arrow_of = () => new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 0.01,
+                                             0x1155aa);
 
 const shown = new Map();
 const there = new Set(); // Keys of the present state; others have gone.
@@ -37,8 +49,12 @@ function place(key, make, position_m, rotation, scale = 1) {
   return mesh;
 }
 
+let name = "";
+let told_ms = -Infinity; // Time of the newest state.
 new EventSource("/feed").onmessage = (event) => {
   const state = JSON.parse(event.data);
+  name = state.name;
+  told_ms = performance.now();
   there.clear();
   for (const tool of state.tools) {
     place(`tool ${tool.number} ${tool.radius_m}`, () => ball_of(tool), tool.proxy_m,
@@ -54,4 +70,7 @@ new EventSource("/feed").onmessage = (event) => {
   for (const [key, mesh] of shown)
     if (!there.has(key) && shown.delete(key)) scene.remove(mesh);
 };
-renderer.setAnimationLoop(() => renderer.render(scene, camera));
+renderer.setAnimationLoop(() => {
+  words.textContent = performance.now() - told_ms < 1000 ? name : "waiting for a controller";
+  renderer.render(scene, camera);
+});

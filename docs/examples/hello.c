@@ -16,7 +16,7 @@ int main(int argc, char** argv)
     part.text = argc > 1 ? argv[1] : "torus.spm";
     if (tactus_world_make(&options, &world, &error) == TACTUS_DONE &&
         tactus_world_add(world, &part, &object, &error) == TACTUS_DONE &&
-        tactus_world_add_hand(world, "sphere:0.002", NULL, &hand, &error) == TACTUS_DONE)
+        tactus_world_add_hand(world, "sphere:0.002", NULL, NULL, &hand, &error) == TACTUS_DONE)
     {
         for (int i = 0; i <= 1000 && error.text[0] == '\0'; ++i)
         {

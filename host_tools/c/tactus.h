@@ -299,8 +299,9 @@ TACTUS_CALL tactus_result tactus_frame_state_of(const tactus_frame* frame,
  * (docs/library.md). These calls are in the library of CMake's target Tactus::tactus and of
  * pkg-config's module tactus. Strings are UTF-8 in the words of hrtc's options.
  *
- * Threads: tactus_world_state(), _hold(), _move(), _feel(), _remove(), _counts_of() and _stop()
- * are for any thread and never block the loop; one thread makes the other calls. */
+ * Threads: tactus_world_state(), _hold(), _move(), _feel(), _remove(), _carve(), _fill(),
+ * _displace(), _save(), _counts_of() and _stop() are for any thread and never block the loop; one
+ * thread makes the other calls. */
 
 typedef struct tactus_world tactus_world;
 /* An object or a hand of one world. 0: none. */
@@ -350,6 +351,8 @@ typedef struct tactus_world_object
     size_t face_count;
     tactus_pose pose;
     const tactus_material* material; /* Null: smooth, as stiff as the tool. */
+    uint32_t edit_faces; /* Room of the model for faces that edits add, 0 to 262144; the largest of
+                          * its objects is used. 0 for a published model. */
 } tactus_world_object;
 TACTUS_CALL void tactus_world_object_default(tactus_world_object* object);
 
@@ -359,15 +362,15 @@ TACTUS_CALL tactus_result tactus_world_make(const tactus_world_options* options,
                                             tactus_world** world, tactus_error* error);
 TACTUS_CALL void tactus_world_end(tactus_world* world);
 
-/* Adds an object. After a refused one before the first frame the world never begins: start and step
- * return the same line. A later refusal changes nothing. */
+/* Adds an object. */
 TACTUS_CALL tactus_result tactus_world_add(tactus_world* world, const tactus_world_object* object,
                                            tactus_handle* handle, tactus_error* error);
 /* Adds a hand before the first frame: a tool as for --tool, such as "sphere:0.002", and a device as
- * for --device; null: the program moves the hand. */
+ * for --device; null: the program moves the hand. `edit` is carve:RATE as for --edit: the tool
+ * carves models with room for edits, and published ones; null: it does not. */
 TACTUS_CALL tactus_result tactus_world_add_hand(tactus_world* world, const char* tool,
-                                                const char* device, tactus_handle* hand,
-                                                tactus_error* error);
+                                                const char* device, const char* edit,
+                                                tactus_handle* hand, tactus_error* error);
 
 /* Starts the guarded loop; ends it, or a loop of one's own. A world that has ended keeps its last
  * states, has closed its devices and never runs again. */
@@ -431,6 +434,31 @@ TACTUS_CALL tactus_result tactus_world_feel(tactus_world* world, tactus_handle o
                                             const tactus_material* material, tactus_error* error);
 TACTUS_CALL tactus_result tactus_world_remove(tactus_world* world, tactus_handle object,
                                               tactus_error* error);
+
+/* Removes from an object's model, or adds to it, what a tool as for --tool sweeps from a pose to
+ * the position to_m without rotation: a sphere, a capsule, or a box without a radius. Positions are
+ * in the model's frame, as it is in its file; all objects of the model change. `rotation` has 9
+ * numbers; null: identity. volume_m3 is the removed or added volume there; may be null. A few ms;
+ * the next frames have the new surface. TACTUS_REFUSED before the first frame, without edit_faces,
+ * and beyond the limits of docs/edits.md. */
+TACTUS_CALL tactus_result tactus_world_carve(tactus_world* world, tactus_handle object,
+                                             const char* tool, const double* position_m,
+                                             const double* rotation, const double* to_m,
+                                             double* volume_m3, tactus_error* error);
+TACTUS_CALL tactus_result tactus_world_fill(tactus_world* world, tactus_handle object,
+                                            const char* tool, const double* position_m,
+                                            const double* rotation, const double* to_m,
+                                            double* volume_m3, tactus_error* error);
+/* Moves the vertices of an object's model within radius_m of center_m by
+ * vector_m x (1 - d^2 / radius_m^2)^2 at the distance d; otherwise as tactus_world_fill(). */
+TACTUS_CALL tactus_result tactus_world_displace(tactus_world* world, tactus_handle object,
+                                                const double* center_m, double radius_m,
+                                                const double* vector_m, double* volume_m3,
+                                                tactus_error* error);
+/* Writes an object's model with its edits as one .spm file: the whole file or none. Also after
+ * tactus_world_stop(). */
+TACTUS_CALL tactus_result tactus_world_save(const tactus_world* world, tactus_handle object,
+                                            const char* path, tactus_error* error);
 
 typedef struct tactus_world_counts
 {

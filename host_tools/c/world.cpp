@@ -203,6 +203,33 @@ void write_state(const Hand& hand, const HandState& from, tactus_hand_state& to)
     std::copy_n(why.data(), std::min(why.size(), sizeof(to.why) - 1), to.why);
 }
 
+std::array<double, 3> three_of(const double* numbers, const char* name)
+{
+    check_finite(&given(numbers, name), 3, name);
+    return {numbers[0], numbers[1], numbers[2]};
+}
+
+/// Edit of an object by what a tool sweeps.
+using SweptEdit = Result<double, Refusal> (WorldObject::*)(const WorldTool&, const HandPose&,
+                                                           const std::array<double, 3>&) const;
+
+tactus_result edit_by_sweep(SweptEdit edit, tactus_world* world, tactus_handle object,
+                            const char* tool, const double* position_m, const double* rotation,
+                            const double* to_m, double* volume_m3, tactus_error* error)
+{
+    return guarded(error,
+                   [&]
+                   {
+                       const tactus_world& in = given(world, "world");
+                       const WorldObject edited = part_of(in, in.objects, object, false);
+                       const auto changed =
+                           (edited.*edit)(tactus::tool(&given(tool, "tool")),
+                                          hand_pose(position_m, rotation), three_of(to_m, "to_m"));
+                       check_done(changed);
+                       c_calls::write(volume_m3, 0, changed.value());
+                   });
+}
+
 } // namespace
 
 extern "C"
@@ -266,6 +293,8 @@ extern "C"
                            tactus_handle& result = given(handle, "handle");
                            ObjectOptions options;
                            options.pose = placed_at(from.pose);
+                           check_range(from.edit_faces, 0, kMaxAddedFaces, "object.edit_faces");
+                           options.edit_faces = from.edit_faces;
                            if (from.material != nullptr)
                            {
                                options.material = felt_as(*from.material);
@@ -282,7 +311,7 @@ extern "C"
     }
 
     tactus_result tactus_world_add_hand(tactus_world* world, const char* tool, const char* device,
-                                        tactus_handle* hand, tactus_error* error)
+                                        const char* edit, tactus_handle* hand, tactus_error* error)
     {
         return guarded(error,
                        [&]
@@ -292,7 +321,8 @@ extern "C"
                            const Hand added =
                                in.world.add(tactus::tool(&given(tool, "tool")),
                                             device != nullptr ? tactus::device(std::string(device))
-                                                              : by_program());
+                                                              : by_program(),
+                                            {.edit = edit != nullptr ? edit : ""});
                            if (!added)
                            {
                                refuse(TACTUS_REFUSED, "{}", added.error());
@@ -398,6 +428,53 @@ extern "C"
                        {
                            const tactus_world& in = given(world, "world");
                            check_done(part_of(in, in.objects, object, false).remove());
+                       });
+    }
+
+    tactus_result tactus_world_carve(tactus_world* world, tactus_handle object, const char* tool,
+                                     const double* position_m, const double* rotation,
+                                     const double* to_m, double* volume_m3, tactus_error* error)
+    {
+        return edit_by_sweep(&WorldObject::carve, world, object, tool, position_m, rotation, to_m,
+                             volume_m3, error);
+    }
+
+    tactus_result tactus_world_fill(tactus_world* world, tactus_handle object, const char* tool,
+                                    const double* position_m, const double* rotation,
+                                    const double* to_m, double* volume_m3, tactus_error* error)
+    {
+        return edit_by_sweep(&WorldObject::fill, world, object, tool, position_m, rotation, to_m,
+                             volume_m3, error);
+    }
+
+    tactus_result tactus_world_displace(tactus_world* world, tactus_handle object,
+                                        const double* center_m, double radius_m,
+                                        const double* vector_m, double* volume_m3,
+                                        tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           const tactus_world& in = given(world, "world");
+                           const WorldObject edited = part_of(in, in.objects, object, false);
+                           check_finite(&radius_m, 1, "radius_m");
+                           const auto changed =
+                               edited.displace(three_of(center_m, "center_m"), radius_m,
+                                               three_of(vector_m, "vector_m"));
+                           check_done(changed);
+                           c_calls::write(volume_m3, 0, changed.value());
+                       });
+    }
+
+    tactus_result tactus_world_save(const tactus_world* world, tactus_handle object,
+                                    const char* path, tactus_error* error)
+    {
+        return guarded(error,
+                       [&]
+                       {
+                           const tactus_world& in = given(world, "world");
+                           check_done(
+                               part_of(in, in.objects, object, false).save(&given(path, "path")));
                        });
     }
 

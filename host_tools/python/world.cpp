@@ -36,6 +36,14 @@ void check_unlocked(Call&& call)
         });
 }
 
+/// Three numbers.
+Numbers vector_of(const py::object& given, const char* name)
+{
+    Numbers vector = numbers_of(given, name);
+    check_shape(vector, {3}, name);
+    return vector;
+}
+
 /// Nine numbers of an optional rotation; null for None.
 const double* rotation_of(const py::object& rotation, Numbers& rows)
 {
@@ -46,6 +54,17 @@ const double* rotation_of(const py::object& rotation, Numbers& rows)
     rows = numbers_of(rotation, "rotation");
     check_shape(rows, {3, 3}, "rotation");
     return rows.data();
+}
+
+/// Text of a string or a path.
+std::string text_of(const py::object& given)
+{
+    const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(given.ptr()));
+    if (!path)
+    {
+        throw py::error_already_set();
+    }
+    return py::cast<std::string>(path);
 }
 
 /// Faces, M x 3, as indices.
@@ -112,6 +131,43 @@ public:
         check([&](tactus_error* error)
               { return tactus_world_remove(world_.get(), handle_, error); });
     }
+    template <auto edit>
+    [[nodiscard]] double edit_by_sweep(const std::string& tool, const py::object& position_m,
+                                       const py::object& to_m, const py::object& rotation) const
+    {
+        Numbers rows;
+        const double* const turned = rotation_of(rotation, rows);
+        const Numbers from = vector_of(position_m, "position_m");
+        const Numbers to = vector_of(to_m, "to_m");
+        double volume_m3 = 0.0;
+        check_unlocked(
+            [&](tactus_error* error)
+            {
+                return edit(world_.get(), handle_, tool.c_str(), from.data(), turned, to.data(),
+                            &volume_m3, error);
+            });
+        return volume_m3;
+    }
+    [[nodiscard]] double displace(const py::object& center_m, double radius_m,
+                                  const py::object& vector_m) const
+    {
+        const Numbers center = vector_of(center_m, "center_m");
+        const Numbers vector = vector_of(vector_m, "vector_m");
+        double volume_m3 = 0.0;
+        check_unlocked(
+            [&](tactus_error* error)
+            {
+                return tactus_world_displace(world_.get(), handle_, center.data(), radius_m,
+                                             vector.data(), &volume_m3, error);
+            });
+        return volume_m3;
+    }
+    void save(const py::object& path) const
+    {
+        const std::string text = text_of(path);
+        check_unlocked([&](tactus_error* error)
+                       { return tactus_world_save(world_.get(), handle_, text.c_str(), error); });
+    }
 
 private:
     Owner world_;
@@ -146,8 +202,7 @@ public:
     {
         Numbers rows;
         const double* const turned = rotation_of(rotation, rows);
-        const Numbers place = numbers_of(position_m, "position_m");
-        check_shape(place, {3}, "position_m");
+        const Numbers place = vector_of(position_m, "position_m");
         tactus_hand_state state{};
         state.size = sizeof(state);
         check_unlocked(
@@ -161,8 +216,7 @@ public:
     {
         Numbers rows;
         const double* const turned = rotation_of(rotation, rows);
-        const Numbers place = numbers_of(position_m, "position_m");
-        check_shape(place, {3}, "position_m");
+        const Numbers place = vector_of(position_m, "position_m");
         check([&](tactus_error* error)
               { return tactus_world_hold(world_.get(), handle_, place.data(), turned, error); });
     }
@@ -252,20 +306,20 @@ public:
 
     WorldObject add(const py::object& model, const std::string& unit, bool published,
                     const py::object& rotation, const py::object& translation_m, double scale,
-                    const tactus_material& material) const
+                    const tactus_material& material, std::uint32_t edit_faces) const
     {
         tactus_world_object object;
         tactus_world_object_default(&object);
         read_pose(object.pose, rotation, translation_m, scale);
         object.unit = unit.c_str();
         object.material = &material;
+        object.edit_faces = edit_faces;
         std::string text = "mesh";
         Numbers vertices;
         py::array_t<std::uint32_t> faces;
-        const bool is_path = py::hasattr(model, "__fspath__");
-        if (is_path || py::isinstance<py::str>(model))
+        if (py::hasattr(model, "__fspath__") || py::isinstance<py::str>(model))
         {
-            text = py::cast<std::string>(is_path ? py::object(model.attr("__fspath__")()) : model);
+            text = text_of(model);
             const bool is_model = text.size() >= 4 && text.ends_with(".spm");
             object.source = published  ? TACTUS_PUBLISHED
                             : is_model ? TACTUS_MODEL_FILE
@@ -294,14 +348,16 @@ public:
                        { return tactus_world_add(world_.get(), &object, &handle, error); });
         return {world_, handle};
     }
-    Hand hand(const std::string& tool, const std::optional<std::string>& device) const
+    Hand hand(const std::string& tool, const std::optional<std::string>& device,
+              const std::optional<std::string>& edit) const
     {
         tactus_handle handle = 0;
         check(
             [&](tactus_error* error)
             {
                 return tactus_world_add_hand(world_.get(), tool.c_str(),
-                                             device ? device->c_str() : nullptr, &handle, error);
+                                             device ? device->c_str() : nullptr,
+                                             edit ? edit->c_str() : nullptr, &handle, error);
             });
         return {world_, handle};
     }
@@ -342,8 +398,8 @@ Felt touch(const py::object& model, const py::object& positions_m, const std::st
     const World world(1'000, memory_mib, stiffness_n_per_m, 0, 0.5, 10.0, 0.0, 0, false, false, "",
                       true, true, false);
     static_cast<void>(world.add(model, unit, false, py::none(), py::none(), 1.0,
-                                material_of(0.0, 0.0, std::nullopt, 0.0, 0.0, 0.0, 0.0)));
-    return world.hand(tool, std::nullopt).path(positions_m, py::none());
+                                material_of(0.0, 0.0, std::nullopt, 0.0, 0.0, 0.0, 0.0), 0));
+    return world.hand(tool, std::nullopt, std::nullopt).path(positions_m, py::none());
 }
 
 std::array<double, 3> three(const double (&values)[3])
@@ -399,7 +455,17 @@ void add_world(py::module_& module)
             "dynamic_friction"_a = py::none(), "damping_n_s_per_m"_a = 0.0,
             "viscosity_n_s_per_m"_a = 0.0, "texture_height_m"_a = 0.0, "texture_length_m"_a = 0.0,
             "Gives the object another material; a stiffness of 0 is the tool's.")
-        .def("remove", &WorldObject::remove, "Removes the object.");
+        .def("remove", &WorldObject::remove, "Removes the object.")
+        .def("carve", &WorldObject::edit_by_sweep<&tactus_world_carve>, "tool"_a, "position_m"_a,
+             "to_m"_a, "rotation"_a = py::none(),
+             "Removes from the model what a tool sweeps, in the model's frame; returns the volume.")
+        .def("fill", &WorldObject::edit_by_sweep<&tactus_world_fill>, "tool"_a, "position_m"_a,
+             "to_m"_a, "rotation"_a = py::none(),
+             "Adds to the model what a tool sweeps; returns the volume.")
+        .def("displace", &WorldObject::displace, "center_m"_a, "radius_m"_a, "vector_m"_a,
+             "Moves vertices of the model round a place; returns the added volume.")
+        .def("save", &WorldObject::save, "path"_a,
+             "Writes the model with its edits as one .spm file.");
     py::class_<Hand>(module, "Hand", "Handle of a tool and its device.")
         .def("step", &Hand::step, "position_m"_a, "rotation"_a = py::none(), "dt_s"_a = 0.0,
              "Moves the hand and runs the next frame.")
@@ -432,22 +498,25 @@ Options are those of hrtc; see docs/python.md.
                const py::object& rotation, const py::object& translation_m, double scale,
                double stiffness_n_per_m, double static_friction,
                const std::optional<double>& dynamic_friction, double damping_n_s_per_m,
-               double viscosity_n_s_per_m)
+               double viscosity_n_s_per_m, std::uint32_t edit_faces)
             {
                 return world.add(model, unit, published, rotation, translation_m, scale,
                                  material_of(stiffness_n_per_m, static_friction, dynamic_friction,
-                                             damping_n_s_per_m, viscosity_n_s_per_m, 0.0, 0.0));
+                                             damping_n_s_per_m, viscosity_n_s_per_m, 0.0, 0.0),
+                                 edit_faces);
             },
             "model"_a, py::kw_only(), "unit"_a = "m", "published"_a = false,
             "rotation"_a = py::none(), "translation_m"_a = py::none(), "scale"_a = 1.0,
             "stiffness_n_per_m"_a = 0.0, "static_friction"_a = 0.0,
             "dynamic_friction"_a = py::none(), "damping_n_s_per_m"_a = 0.0,
-            "viscosity_n_s_per_m"_a = 0.0,
+            "viscosity_n_s_per_m"_a = 0.0, "edit_faces"_a = 0,
             "Adds an object: the path of an .spm file or of a mesh, the name of a published model, "
-            "or a pair of vertices, N x 3, and faces, M x 3.")
+            "or a pair of vertices, N x 3, and faces, M x 3. edit_faces is the model's room for "
+            "faces that edits add.")
         .def("hand", &World::hand, "tool"_a = "sphere:0.002", "device"_a = py::none(),
+             "edit"_a = py::none(),
              "Adds a tool and its device in the words of hrtc; without a device the program moves "
-             "the hand.")
+             "the hand. With edit=\"carve:RATE\" the tool carves what it presses on.")
         .def("start", &World::start, "Starts the guarded loop.")
         .def("stop", &World::stop, "Ends the loop once the forces have faded.")
         .def("step", &World::step, "dt_s"_a = 0.0, "Runs the next frame, with all hands in place.")

@@ -129,10 +129,11 @@ struct WorldCounts
 ///     loop of one's own  Hand::step() or step() runs each frame on the calling thread
 ///
 /// Everything is added before the first frame, except objects that show a model which the World has
-/// already. A refused add() returns a handle that says why, and start() and the first step return
-/// the first of these refusals. One thread uses a World, except for its handles, state, counts()
-/// and stop(). A World that was moved from may only be destroyed or assigned to. The loop's
-/// assertions brake the devices and end the process (docs/safety.md).
+/// already. A refused add() returns a handle that says why and leaves the World as it was. Without
+/// an object or a hand, start() and step() are refused and say why an add() was. One thread uses a
+/// World, except for its handles, state, counts() and stop(). A World that was moved from may only
+/// be destroyed or assigned to. The loop's assertions brake the devices and end the process
+/// (docs/safety.md).
 class World
 {
 public:
@@ -158,7 +159,7 @@ public:
     /// World with a scene has no other objects at the start.
     std::vector<WorldObject> add_scene(const std::string& path);
 
-    /// First refusal of add(); none if all were accepted.
+    /// First refusal of add() before the first frame; none if all were accepted.
     [[nodiscard]] std::optional<Refusal> error() const;
 
     /// Opens models and devices and starts the loop. Waits at most WorldOptions::wait_s for each. A

@@ -203,8 +203,15 @@ Result<WorldObject, Refusal> WorldCore::try_add(const WorldModel& model,
     {
         return failure("a World with a scene has no other objects at the start");
     }
+    const std::size_t models = plan_.options().models.size();
     const auto taken = plan_.take_model(model, phase_.load() == Phase::open);
-    return taken ? place(taken.value(), options) : Result<WorldObject, Refusal>(taken.error());
+    auto placed =
+        taken ? place(taken.value(), options) : Result<WorldObject, Refusal>(taken.error());
+    if (!placed)
+    {
+        plan_.forget_models_after(models);
+    }
+    return placed;
 }
 
 /// Adds an object of a known model: to the options before the start, to the scene later.
@@ -304,19 +311,13 @@ std::optional<Refusal> WorldCore::why_not(std::string_view call) const
     {
         return failure(fmt::format("{}: {}", call, kHasEnded));
     }
-    if (first_refusal_)
-    {
-        return first_refusal_;
-    }
-    if (plan_.options().tools.empty())
-    {
-        return failure(fmt::format("{}: the World has no hand; add one first", call));
-    }
-    if (plan_.options().objects.empty() && plan_.options().scene.empty())
-    {
-        return failure(fmt::format("{}: the World has no object; add one first", call));
-    }
-    return std::nullopt;
+    const bool has_hand = !plan_.options().tools.empty();
+    const bool has_object = !plan_.options().objects.empty() || !plan_.options().scene.empty();
+    return has_hand && has_object
+               ? std::nullopt
+               : std::optional(failure(fmt::format(
+                     "{}: the World has no {}; {}", call, has_hand ? "object" : "hand",
+                     first_refusal_ ? "refused: " + first_refusal_->text : "add one first")));
 }
 
 /// Opens models and devices, and makes what the loop shares with the program. A refusal changes

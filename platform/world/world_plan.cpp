@@ -137,6 +137,13 @@ Result<std::size_t, Refusal> WorldPlan::take_model(const WorldModel& model, bool
     return options_.models.size() - 1;
 }
 
+void WorldPlan::forget_models_after(std::size_t count)
+{
+    options_.models.resize(count);
+    has_published_ = has_published_ && count > 0;
+    has_files_ = has_files_ && (count > 0 || !options_.scene.empty());
+}
+
 std::optional<Refusal> WorldPlan::fault_of_room(std::size_t model, std::uint32_t faces,
                                                 bool is_open) const
 {
@@ -188,6 +195,7 @@ Result<std::uint32_t, Refusal> WorldPlan::add_hand(const WorldTool& tool, const 
         return failure("a hand has a fixture or a force of the program, not both");
     }
     const std::size_t number = options_.tools.size();
+    const std::size_t models = options_.models.size();
     hrtc::ToolOptions made;
     HandParts parts;
     for (const std::string& fault :
@@ -198,6 +206,7 @@ Result<std::uint32_t, Refusal> WorldPlan::add_hand(const WorldTool& tool, const 
     {
         if (!fault.empty())
         {
+            forget_models_after(models);
             return failure(fault);
         }
     }

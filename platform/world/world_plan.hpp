@@ -57,6 +57,8 @@ public:
     /// Returns the index of the model in the options; a file or a mesh is read first. `is_open` is
     /// false once frames run: then only known models are taken.
     [[nodiscard]] Result<std::size_t, Refusal> take_model(const WorldModel& model, bool is_open);
+    /// Undoes take_model() of a refused part; `count` is the number of models before it.
+    void forget_models_after(std::size_t count);
     /// Fault of a room for edits that an object of a model reserves; empty if there is none.
     [[nodiscard]] std::optional<Refusal> fault_of_room(std::size_t model, std::uint32_t faces,
                                                        bool is_open) const;

@@ -504,6 +504,8 @@ def check_worlds(scratch):
     refuses(tactus.Error, "tool: 'ball:1'", lambda: tactus.World().hand("ball:1"))
     refuses(tactus.Error, "the World has no hand", lambda: tactus.World().start())
     world = tactus.World(objects_max=1)
+    refuses(tactus.Error, "nowhere.spm: ", lambda: world.add("nowhere.spm"))
+    refuses(tactus.Error, "tool: 'ball:1'", lambda: world.hand("ball:1"))
     part = world.add("torus.spm")
     hand = world.hand()
     refuses(ValueError, "rotation: shape (2, 2)",
@@ -520,6 +522,60 @@ def check_worlds(scratch):
     refuses(tactus.Error, "was removed before", part.remove)
     world.stop()
     refuses(tactus.Error, "the World has ended", lambda: hand.step(path[0]))
+
+
+def check_edits(scratch):
+    """Edits of a World's model have the volumes of solids, are felt and saved, or refused."""
+    os.chdir(scratch)
+    corners = np.array([[0, 0, 0], [10, 0, 0], [0, 10, 0], [0, 0, 10]])  # In mm.
+    faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+    far = [0, 0, 1]
+    below = [0.0025, 0.0025, -0.002]
+    world = tactus.World()
+    part = world.add((corners, faces), unit="mm", edit_faces=4096)
+    stiff = world.add((corners, faces), unit="mm", translation_m=far)
+    hand = world.hand("sphere:0.001", edit="carve:5000")
+    box = "box:0.002,0.002,0.002"
+    refuses(tactus.Error, "carve(): edits begin with the first frame",
+            lambda: part.carve(box, [0, 0, 0], [0, 0, 0]))
+    hand.step(below)
+    rounding = 5e-12  # m^3, of the grid and the shift of a swept tool.
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    carved = part.carve(box, [0, 0, 0], [0, 0, 0], turn)
+    expect(abs(carved - 1e-9) < rounding, f"an eighth of the box is carved, {carved}")
+    within_m = [0.0008, 0.0008, 0.0008]
+    filled = part.fill("box:0.001,0.001,0.001", within_m, to_m=within_m)
+    expect(abs(filled - 0.343e-9) < rounding, f"a part of it is filled, {filled}")
+    moved = part.displace([0, 0, 0.01], 0.002, [0, 0, -0.001])
+    expect(abs(moved + 1e-7 / 6) < rounding, f"a tenth of the solid is pressed in, {moved}")
+    into = np.linspace(below, [0.0025, 0.0025, 0.001], 3000)
+    depth = hand.path(into).proxy_m[-1, 2] + 0.001
+    expect(depth > 3e-4, f"a burr is {depth} m deep in the bottom")
+    part.save(pathlib.Path("carved.spm"))
+    volume = tactus.StaticModel("carved.spm")
+    expect(volume.distances([[0.0025, 0.0025, 1e-4]]).side[0] == tactus.OUTSIDE,
+           "a saved model has no hole")
+    refuses(tactus.Error, "has no room for edits; set edit_faces",
+            lambda: stiff.fill(box, [0, 0, 0], [0, 0, 0]))
+    refuses(tactus.Error, "carve(): tool: only a sphere",
+            lambda: part.carve("point", [0, 0, 0], [0, 0, 0]))
+    refuses(ValueError, "to_m: shape (2,); (3,) is needed", lambda: part.carve(box, far, [0, 0]))
+    refuses(ValueError, "to_m: element 0 is nan", lambda: part.carve(box, far, [np.nan, 0, 0]))
+    refuses(ValueError, "position_m: (nan, 0, 0)", lambda: part.fill(box, [np.nan, 0, 0], far))
+    refuses(ValueError, "radius_m: element 0 is nan",
+            lambda: part.displace(far, np.nan, [0, 0, 1]))
+    refuses(tactus.Error, "displace(): displacement: ", lambda: part.displace(far, -1, far))
+    refuses(tactus.Error, "/nowhere/", lambda: part.save("/nowhere/carved.spm"))
+    refuses(TypeError, "int", lambda: part.save(7))
+    refuses(ValueError, "object.edit_faces: 300000; 0 to 262144",
+            lambda: tactus.World().add("torus.spm", edit_faces=300_000))
+    refuses(tactus.Error, "edit_faces: 1; 0 to 0 is allowed for a published model",
+            lambda: tactus.World().add("torus", published=True, edit_faces=1))
+    refuses(tactus.Error, "edit: 'carve:0'", lambda: tactus.World().hand(edit="carve:0"))
+    world.stop()
+    part.save("again.spm")
+    expect(tactus.Model("again.spm").hash == tactus.Model("carved.spm").hash,
+           "a World that has ended saves another model")
 
 
 def check_page(scratch):
@@ -564,6 +620,7 @@ def main():
         check_server(path)
         check_begins_inside(path)
         check_worlds(scratch)
+        check_edits(scratch)
         check_refusals(path)
         check_documentation(scratch)
         check_page(scratch)

@@ -31,6 +31,7 @@ grep -qxF "$force" "$page" || fail "hello says '$force', the page something else
 for program in hello guarded; do
     code=0
     "${!program}" other.spm >out.txt 2>said.txt || code=$?
-    [[ $code == 2 && ! -s out.txt && $(<said.txt) == "$program: other.spm: "* \
-        && $(wc -l <said.txt) == 1 ]] || fail "a missing file: exit $code, $(<said.txt)"
+    [[ $code == 2 && ! -s out.txt && $(wc -l <said.txt) == 1 \
+        && $(<said.txt) == "$program: "*' the World has no object; refused: other.spm: '* ]] \
+        || fail "a missing file: exit $code, $(<said.txt)"
 done

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-# browser.py BIN_DIR: the page of hrtc's report and that of spm_view, while hrtc touches a model, in
-# headless Chromium, operated through WebDriver. Exit code 77 without Debian's chromium and
-# chromium-driver. With VIEW_PICTURES it stores pictures of the page in that folder.
+# browser.py BIN_DIR EXAMPLES_DIR: the page of hrtc's report, that of spm_view and the example of its
+# feed, while hrtc touches a model, in headless Chromium, operated through WebDriver. Exit code 77
+# without Debian's chromium and chromium-driver. With VIEW_PICTURES it stores pictures of the pages
+# in that folder.
 #
 # Every wait is for an event and names a missing one; all started programs are ended in any case,
 # including browsers that have left their parents.
@@ -287,6 +288,36 @@ def look(browser, url, serve):
     expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
 
 
+# Greatest distance of a picture element's colour from the background, and the name that is shown.
+FEED = """const gl = renderer.getContext();
+renderer.render(scene, camera);
+const seen = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, seen);
+return {drawn: Math.max(...[0, 1, 2].map((part) => seen.reduce((most, value, i) =>
+          i % 4 === part ? Math.max(most, Math.abs(value - seen[part])) : most, 0))),
+        words: words.textContent, keys: [...shown.keys()].sort()}"""
+
+
+def feed_page(browser, url, serve):
+    """The example for three.js: tool, force and object of a controller, and the wait for one."""
+    browser.resize(900, 700)
+    browser.open(f"{url}pages/feed_three.html",
+                 lambda: browser.text("words") == "waiting for a controller",
+                 "what the feed's page waits for")
+    expect(browser.run(FEED)["drawn"] == 0, "something is drawn without a controller")
+    hand = serve()
+    eventually(lambda: browser.text("words").startswith("hrtc-"), "the controller of the feed")
+    eventually(lambda: re.match("force 0,object 0 [0-9a-f]+,tool 0 0\\.00",
+                                ",".join(browser.run(FEED)["keys"])), "the parts of a feed")
+    expect(browser.run(FEED)["drawn"] > 50, "nothing is drawn")
+    browser.resize(1200, 800)
+    fits(browser, "the feed's page in a wider window")
+    browser.picture("feed")
+    hand.terminate()
+    eventually(lambda: browser.text("words") == "waiting for a controller", "an end of the feed")
+    expect(not browser.complaints(), f"the browser complains: {sorted(browser.complaints())[:3]}")
+
+
 # State of each chart: whether it is drawn, and its zoom.
 CHARTS = """return charts.map((graph) => ({
   is_drawn: [...graph.graphDiv.querySelectorAll("canvas")].some((canvas) => canvas.getContext("2d")
@@ -400,7 +431,7 @@ def frozen_page(browser):
 
 
 def main():
-    programs = pathlib.Path(sys.argv[1]).resolve()
+    programs, examples = (pathlib.Path(folder).resolve() for folder in sys.argv[1:3])
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # No process is left running.
     for needed in ("chromium", "chromedriver"):
         if shutil.which(needed) is None:
@@ -417,7 +448,7 @@ def main():
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             start("chromedriver", "--port=0", log="driver.log")
             start(programs / "spm_publish", "bumpy.spm", "--domain", domain, log="publish.log")
-            start(programs / "spm_view", "--domain", domain, "--port", "0",
+            start(programs / "spm_view", "--domain", domain, "--port", "0", "--pages", examples,
                   log="view.log")
             url = line_in("view.log", r"(http://\S+) shows")
             state = urllib.request.urlopen(url + "state", timeout=PATIENCE_S)
@@ -437,9 +468,10 @@ def main():
             browser = Browser("driver.log")
             reported(browser)
             played(browser, line_in("film.log", r"(http://\S+) shows"))
-            look(browser, url, lambda: start(
-                programs / "hrtc", "--model", "bumpy", "--no-static", "--device", "sim",
-                "--allow-no-rt", "--domain", domain, "--duration", "600", log="hrtc.log"))
+            for page in (look, feed_page):
+                page(browser, url, lambda: start(
+                    programs / "hrtc", "--model", "bumpy", "--no-static", "--device", "sim",
+                    "--allow-no-rt", "--domain", domain, "--duration", "600", log="hrtc.log"))
         finally:
             end_all()
             os.chdir("/")

@@ -312,8 +312,10 @@ TEST(World, wrong_parts_are_refused_in_one_line_and_the_world_does_not_begin)
     refused(parts.add(WorldObject()), "add(): the handle is of no object of this World");
     EXPECT_NE(parts.add(model_file("no--where.spm")).error().find("no--where.spm: "),
               std::string::npos);
-    EXPECT_EQ(line_of(parts.step()), parts.error()->text);
-    EXPECT_EQ(line_of(parts.start()), parts.error()->text);
+    EXPECT_EQ(line_of(parts.step()),
+              "step(): the World has no hand; refused: " + parts.error()->text);
+    EXPECT_EQ(line_of(parts.start()),
+              "start(): the World has no hand; refused: " + parts.error()->text);
 
     EXPECT_EQ(line_of(World().step()), "step(): the World has no hand; add one first");
     World empty;
@@ -337,6 +339,38 @@ TEST(World, wrong_parts_are_refused_in_one_line_and_the_world_does_not_begin)
     static_cast<void>(small.add(sphere(0.01)));
     EXPECT_NE(line_of(small.step()).find("memory_mib: 0.25 MiB is too small for 1 model"),
               std::string::npos);
+}
+
+TEST(World, a_refused_part_leaves_the_world_as_it_was)
+{
+    World world({.memory_mib = 16.0, .objects_max = 2});
+    EXPECT_FALSE(world.add(model_file("nowhere.spm")));
+    EXPECT_FALSE(world.add(published("cube"), {.edit_faces = 1}));
+    const std::string path = small_model(0).path.string();
+    EXPECT_FALSE(world.add(model_file(path), {.pose = {.scale = 0.0}}));
+    EXPECT_FALSE(world.add(mesh_tool(model_file(path)), by_program(), {.fixture = "spring"}));
+    EXPECT_TRUE(world.add(published("cube"))) << "a model of a refused part is still there";
+
+    World other({.memory_mib = 16.0, .objects_max = 2});
+    EXPECT_FALSE(other.add(model_file("nowhere.spm")));
+    EXPECT_FALSE(other.add(published("cube"), {.edit_faces = 1}));
+    EXPECT_FALSE(other.add(sphere(5.0)));
+    const Hand hand = other.add(sphere(kRadius_m));
+    EXPECT_NE(line_of(other.step()).find("step(): the World has no object; refused: nowhere.spm"),
+              std::string::npos);
+    const WorldObject part = other.add(cube());
+    ASSERT_TRUE(part) << part.error();
+    Hand last = hand;
+    for (std::size_t i = 1; i <= kMaxTools; ++i)
+    {
+        last = other.add(sphere(kRadius_m));
+    }
+    EXPECT_EQ(last.error(), "a World has at most 16 hands");
+    EXPECT_GT(press(hand, kRadius_m - kPress_m).force_n[2], 0.0);
+    EXPECT_NE(other.error().value().text.find("nowhere.spm: "), std::string::npos);
+    EXPECT_TRUE(other.add(part, {.pose = {.translation_m = {0.5, 0.0, 0.0}}}));
+    EXPECT_NE(other.add(part).error().find("objects_max: "), std::string::npos);
+    EXPECT_TRUE(hand.step(above(0.02)));
 }
 
 TEST(World, wrong_calls_are_refused_and_the_loop_goes_on)
