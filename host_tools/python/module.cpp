@@ -368,32 +368,9 @@ std::array<double, 3> to_array(const double (&values)[3])
     return {values[0], values[1], values[2]};
 }
 
-} // namespace
-
-PYBIND11_MODULE(tactus, module)
+/// Adds the kinds and flags of answers.
+void add_constants(py::module_& module)
 {
-    using namespace py::literals;
-    module.doc() =
-        R"(Distances and forces between tools and triangle meshes, exact or with proven bounds.
-Units are SI; see docs/python.md.
-
->>> import tactus
->>> model = tactus.Model("torus.spm")
->>> probe = tactus.Tool(0.02, query_only=True)
->>> frame = tactus.Frame([model], [probe], [tactus.Object()])
->>> answers = frame.run([[0.05, 0, 0.03], [0, 0, 0.2]], rounds=1000)
->>> [int(kind) for kind in answers.kind[:, 0]] == [tactus.EXACT, tactus.SEPARATED]
-True
->>> round(float(answers.lower_m[0, 0]), 3)
-0.01
-)";
-    if (tactus_abi() != TACTUS_ABI)
-    {
-        throw py::import_error("the module was made for another version of libtactus");
-    }
-    module.attr("__version__") = tactus_version();
-    py::register_exception<TactusError>(module, "Error", PyExc_RuntimeError);
-
     module.attr("EXACT") = static_cast<int>(TACTUS_EXACT);
     module.attr("SEPARATED") = static_cast<int>(TACTUS_SEPARATED);
     module.attr("BOUNDED") = static_cast<int>(TACTUS_BOUNDED);
@@ -405,7 +382,12 @@ True
     module.attr("CAPACITY_EXCEEDED") = TACTUS_CAPACITY_EXCEEDED;
     module.attr("RATE_LIMITED") = TACTUS_RATE_LIMITED;
     module.attr("DATA_LIMITED") = TACTUS_DATA_LIMITED;
+}
 
+/// Adds the class Model.
+void add_model(py::module_& module)
+{
+    using namespace py::literals;
     py::class_<Model, std::shared_ptr<Model>>(module, "Model",
                                               R"(An .spm model, for one Frame at a time.
 
@@ -428,7 +410,12 @@ True
         .def_property_readonly("high_m", [](const Model& m) { return to_array(m.info().high_m); })
         .def_property_readonly("is_closed", [](const Model& m) { return m.info().is_closed != 0; })
         .def_property_readonly("hash", [](const Model& m) { return m.info().hash; });
+}
 
+/// Adds the classes StaticModel and Distances, with the sides.
+void add_static_model(py::module_& module)
+{
+    using namespace py::literals;
     module.attr("UNSIGNED") = static_cast<int>(TACTUS_UNSIGNED);
     module.attr("OUTSIDE") = static_cast<int>(TACTUS_OUTSIDE);
     module.attr("INSIDE") = static_cast<int>(TACTUS_INSIDE);
@@ -447,7 +434,12 @@ True
         .def(py::init<const std::string&>(), "path"_a)
         .def("distances", &StaticModel::distances, "points_m"_a,
              "Distances of N x 3 points to the surface; points are in the source mesh's frame.");
+}
 
+/// Adds the classes Tool and Object.
+void add_tool_and_object(py::module_& module)
+{
+    using namespace py::literals;
     py::class_<tactus_tool>(module, "Tool", R"(A tool: all points within radius_m of its core.
 The radius is 1e-6 to 1 m, up to 1000 m for a query-only tool (query_only).
 
@@ -468,7 +460,12 @@ Scale 0.001 to 1000, translation within 10,000 m; friction 0 to 3, dynamic at mo
         .def(py::init(&make_object), "model"_a = 0, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0, "static_friction"_a = 0.0,
              "dynamic_friction"_a = 0.0);
+}
 
+/// Adds the classes Frame and Answers.
+void add_frame(py::module_& module)
+{
+    using namespace py::literals;
     py::class_<Answers>(module, "Answers",
                         "Answers of a run: arrays over N poses, T tools and J objects.")
         .def_readonly("force_n", &Answers::force_n)
@@ -509,5 +506,37 @@ Scale 0.001 to 1000, translation within 10,000 m; friction 0 to 3, dynamic at mo
             "viscosity_n_s_per_m"_a = 0.0, "texture_height_m"_a = 0.0, "texture_length_m"_a = 0.0,
             "Sets the material of an object from the next frame on; contacts blend to it in 50 ms.")
         .def("state", &Frame::state);
+}
+
+} // namespace
+
+PYBIND11_MODULE(tactus, module)
+{
+    module.doc() =
+        R"(Distances and forces between tools and triangle meshes, exact or with proven bounds.
+Units are SI; see docs/python.md.
+
+>>> import tactus
+>>> model = tactus.Model("torus.spm")
+>>> probe = tactus.Tool(0.02, query_only=True)
+>>> frame = tactus.Frame([model], [probe], [tactus.Object()])
+>>> answers = frame.run([[0.05, 0, 0.03], [0, 0, 0.2]], rounds=1000)
+>>> [int(kind) for kind in answers.kind[:, 0]] == [tactus.EXACT, tactus.SEPARATED]
+True
+>>> round(float(answers.lower_m[0, 0]), 3)
+0.01
+)";
+    if (tactus_abi() != TACTUS_ABI)
+    {
+        throw py::import_error("the module was made for another version of libtactus");
+    }
+    module.attr("__version__") = tactus_version();
+    py::register_exception<TactusError>(module, "Error", PyExc_RuntimeError);
+
+    add_constants(module);
+    add_model(module);
+    add_static_model(module);
+    add_tool_and_object(module);
+    add_frame(module);
     add_world(module);
 }

@@ -407,11 +407,9 @@ std::array<double, 3> three(const double (&values)[3])
     return {values[0], values[1], values[2]};
 }
 
-} // namespace
-
-void add_world(py::module_& module)
+/// Adds the classes HandState and Felt.
+void add_answers(py::module_& module)
 {
-    using namespace py::literals;
     py::class_<tactus_hand_state>(module, "HandState", "State of a hand after a frame.")
         .def_property_readonly("frame", [](const tactus_hand_state& s) { return s.frame; })
         .def_property_readonly("force_n",
@@ -438,6 +436,12 @@ void add_world(py::module_& module)
         .def_readonly("proxy_m", &Felt::proxy_m)
         .def_readonly("in_contact", &Felt::in_contact)
         .def_readonly("withheld", &Felt::withheld);
+}
+
+/// Adds the classes WorldObject and Hand.
+void add_handles(py::module_& module)
+{
+    using namespace py::literals;
     py::class_<WorldObject>(module, "WorldObject", "Handle of an object of a World.")
         .def("move", &WorldObject::move, py::kw_only(), "rotation"_a = py::none(),
              "translation_m"_a = py::none(), "scale"_a = 1.0, "Moves the object to a pose.")
@@ -474,6 +478,12 @@ void add_world(py::module_& module)
         .def("hold", &Hand::hold, "position_m"_a, "rotation"_a = py::none(),
              "Moves the hand for the next frames.")
         .def("state", &Hand::state, "State after the newest frame; never waits for the loop.");
+}
+
+/// Adds the class World.
+void add_world_class(py::module_& module)
+{
+    using namespace py::literals;
     py::class_<World>(module, "World", R"(Objects, hands and the guarded loop of hrtc.
 Options are those of hrtc; see docs/python.md.
 
@@ -521,6 +531,12 @@ Options are those of hrtc; see docs/python.md.
         .def("stop", &World::stop, "Ends the loop once the forces have faded.")
         .def("step", &World::step, "dt_s"_a = 0.0, "Runs the next frame, with all hands in place.")
         .def("counts", &World::counts, "Counts since the start.");
+}
+
+/// Adds the function touch().
+void add_touch(py::module_& module)
+{
+    using namespace py::literals;
     module.def("touch", &touch, R"(Forces of a sphere or another tool on its path over a model.
 
 >>> import numpy
@@ -530,6 +546,16 @@ True
 )",
                "model"_a, "positions_m"_a, py::kw_only(), "tool"_a = "sphere:0.002", "unit"_a = "m",
                "memory_mib"_a = 2.0, "stiffness_n_per_m"_a = 500.0);
+}
+
+} // namespace
+
+void add_world(py::module_& module)
+{
+    add_answers(module);
+    add_handles(module);
+    add_world_class(module);
+    add_touch(module);
 }
 
 } // namespace tactus_python

@@ -11,7 +11,7 @@ namespace tactus
 {
 
 class Frame;
-class ObjectSpeedLimit;
+struct ObjectSpeedLimit;
 struct PairOutput;
 
 /// Lists the objects that tools may touch, as of the last frame, objects in reach first. An object

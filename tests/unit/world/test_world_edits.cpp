@@ -11,6 +11,7 @@
 #include "tests/unit/world/world_rig.hpp"
 #include "transport/dds/dds_server.hpp"
 #include "transport/store/model_store.hpp"
+#include "transport/store/store_link.hpp"
 
 #include <algorithm>
 #include <atomic>
