@@ -60,12 +60,7 @@ ServerTopics::create(dds::DdsClient& client, const Controller& controller,
     topics->edits_ = edit_reader(client, controller, log);
     if (shows_refinement_state)
     {
-        auto front = RefinementStateSender::create(client, controller);
-        if (!front)
-        {
-            return front.error();
-        }
-        topics->front_ = std::move(front).value();
+        topics->states_.emplace(controller);
     }
     return topics;
 }
@@ -87,16 +82,16 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
 }
 
 void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
-                           RefinementStateTap* front, MonotonicTime now,
+                           RefinementStateTap* states, MonotonicTime now,
                            SceneKeeper::NameSink names)
 {
     tap_ = &tap;
     TACTUS_ASSERT(edits != nullptr || edits_ == nullptr);
     edit_mailbox_ = edits;
-    if (front_ != nullptr)
+    if (states_)
     {
-        TACTUS_ASSERT(front != nullptr);
-        front_->connect(*front);
+        TACTUS_ASSERT(states != nullptr);
+        states_->connect(*states);
     }
     if (keeper_ != nullptr)
     {
@@ -122,9 +117,9 @@ void ServerTopics::add_cuts(std::unique_ptr<CutSender> cuts) noexcept
 
 void ServerTopics::tell_begins_inside(std::size_t tool) noexcept
 {
-    if (front_ != nullptr)
+    if (states_)
     {
-        front_->tell_begins_inside(tool);
+        states_->tell_begins_inside(tool);
     }
 }
 
@@ -158,10 +153,6 @@ void ServerTopics::step(MonotonicTime now)
     {
         is_renewed_ = true;
         renew_objects(false);
-    }
-    if (front_ != nullptr)
-    {
-        front_->step(now, keeper_.get());
     }
 }
 
@@ -260,7 +251,9 @@ void ServerTopics::send_telemetry(MonotonicTime now)
     {
         name_server(telemetry.pairs[i].server_epoch, telemetry.pairs[i].object);
     }
-    telemetry_->write(telemetry, take_objects());
+    const std::optional<RefinementState> state =
+        states_ ? states_->take(now, *telemetry_) : std::nullopt;
+    telemetry_->write(telemetry, take_objects(), state ? &*state : nullptr);
 }
 
 void ServerTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry,
@@ -310,12 +303,10 @@ ObjectsTelemetry ServerTopics::take_objects()
         {
             const ServedModel& model = controller_.models()[object.model];
             const auto name = names_.find(object.number);
-            Similarity place = object.pose;
-            place.translation_m = place.local_to_world(-origins_m_[object.model]);
             ObjectTelemetry& told = shown.objects.emplace_back(
                 ObjectTelemetry{0, object.number, object.number,
                                 printable(name != names_.end() ? name->second : model.name),
-                                model.hash, pose_of(place)});
+                                model.hash, source_pose_of(object.pose, origins_m_[object.model])});
             name_server(told.server_epoch, told.object);
         }
     }
