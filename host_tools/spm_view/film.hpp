@@ -103,7 +103,7 @@ private:
         std::uint64_t pieces{0}; ///< Hash of the pieces that arrived in the frame.
         std::uint64_t faces{0};  ///< Hash of the models' state hashes.
         /// Number of frames so far with each worst answer, by AnswerKind.
-        std::array<std::uint32_t, 5> answers{};
+        std::array<std::uint32_t, kAnswerKinds> answers{};
         std::uint32_t faults{0};
         std::uint32_t faults_seen{0};
         std::uint32_t pairs_end{0};

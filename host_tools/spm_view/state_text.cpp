@@ -29,8 +29,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kKindNames{"exact", "separated", "bounded", "stale", "within_tolerance"};
-
 /// Name of member `i` of RefinementState::times: the stages, the frame, its CPU time.
 const char* time_name(std::size_t i)
 {
@@ -100,7 +98,7 @@ Json pairs_json(const Telemetry& telemetry)
         pairs.push_back({{"tool", pair.tool},
                          {"server", fmt::format("{:016x}", pair.server_epoch)},
                          {"object", pair.object},
-                         {"kind", kKindNames[static_cast<std::size_t>(pair.kind)]},
+                         {"kind", kAnswerNames[static_cast<std::size_t>(pair.kind)]},
                          {"lower_m", number_of(pair.lower_m)},
                          {"upper_m", number_of(pair.upper_m)},
                          {"point_m", pair.point_m},
