@@ -78,7 +78,7 @@ public:
         }
         json_[name] = std::move(list);
     }
-    [[nodiscard]] std::string line() const { return json_.dump(); }
+    [[nodiscard]] const nlohmann::ordered_json& json() const noexcept { return json_; }
 
 private:
     nlohmann::ordered_json json_;
@@ -202,7 +202,21 @@ std::string feed_json(const LiveController& controller)
 {
     JsonFields fields;
     tell_feed(fields, controller, {controller.objects});
-    return fields.line();
+    return fields.json().dump();
+}
+
+nlohmann::ordered_json feed_tool(const LiveController& controller, std::size_t number)
+{
+    JsonFields fields;
+    tell_feed_tool(fields, controller, number);
+    return fields.json();
+}
+
+nlohmann::ordered_json feed_object(const ObjectTelemetry& object)
+{
+    JsonFields fields;
+    tell_feed_object(fields, object);
+    return fields.json();
 }
 
 std::vector<std::string> feed_datagrams(const LiveController& controller)

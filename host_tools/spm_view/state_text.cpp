@@ -3,6 +3,7 @@
 #include "host_tools/spm_view/state_text.hpp"
 
 #include "host_tools/spm_view/cut.hpp"
+#include "host_tools/spm_view/feed.hpp"
 #include "host_tools/spm_view/force_words.hpp"
 #include "host_tools/web/prometheus_text.hpp"
 #include "rt_core/records/work_counters.hpp"
@@ -55,36 +56,25 @@ Json faults_of(std::uint32_t bits)
     return names;
 }
 
+/// Fields of the feed, and words about the force; null without a refinement state.
 Json tool_json(const LiveController& controller, std::size_t i)
 {
     const Telemetry& telemetry = controller.told.telemetry;
-    const ToolTelemetry& tool = telemetry.tools[i];
-    Json json{{"position_m", tool.position_m},
-              {"rotation", tool.rotation},
-              {"proxy_m", tool.proxy_m},
-              {"proxy_rotation", tool.proxy_rotation},
-              {"force_n", tool.force_n},
-              {"torque_nm", tool.torque_nm},
-              {"in_contact", tool.in_contact},
-              {"halted", tool.halted},
-              {"over_constrained", tool.over_constrained},
-              {"data_limited", tool.data_limited},
-              {"buttons", tool.buttons},
-              {"words", nullptr},
-              {"state", nullptr},
-              {"shape", nullptr},
-              {"radius_m", nullptr}};
-    if (const RefinementState* all = controller.state(); all != nullptr && i < all->tools.size())
+    Json json = feed_tool(controller, i);
+    json["state"] = nullptr;
+    json["words"] = nullptr;
+    const RefinementState* state = controller.state();
+    if (state == nullptr || i >= state->tools.size())
     {
-        const RefinementStateTool& shown = all->tools[i];
-        if (!controller.is_recorded)
-        {
-            json["state"] = kSafetyStateNames[static_cast<std::size_t>(shown.state)];
-            json["words"] =
-                force_words(shown, tool, std::span(telemetry.models).first(telemetry.model_count));
-        }
-        json["shape"] = shown.shape;
-        json["radius_m"] = shown.radius_m;
+        json["shape"] = nullptr;
+        json["radius_m"] = nullptr;
+    }
+    else if (!controller.is_recorded)
+    {
+        const RefinementStateTool& tool = state->tools[i];
+        json["state"] = kSafetyStateNames[static_cast<std::size_t>(tool.state)];
+        json["words"] = force_words(tool, telemetry.tools[i],
+                                    std::span(telemetry.models).first(telemetry.model_count));
     }
     return json;
 }
@@ -180,23 +170,17 @@ Json regions_json(const RefinementState& state)
     return regions;
 }
 
-/// Objects with the poses of their models' frames, in which the page draws faces.
+/// Fields of the feed, with the poses of the models' frames, in which the page draws faces.
 Json objects_json(const LiveController& controller, const ModelShelf& shelf)
 {
     Json objects = Json::array();
-    for (const ObjectTelemetry& object : controller.objects)
+    for (ObjectTelemetry object : controller.objects)
     {
-        const auto known = shelf.find(object.model);
-        const Pose pose =
-            known != nullptr ? frame_pose_of(object.pose, known->header().origin_m()) : object.pose;
-        objects.push_back({{"server", fmt::format("{:016x}", object.server_epoch)},
-                           {"object", object.object},
-                           {"number", object.number},
-                           {"name", object.name},
-                           {"model", hash_text(object.model)},
-                           {"rotation", pose.rotation},
-                           {"translation_m", pose.translation_m},
-                           {"scale", pose.scale}});
+        if (const auto known = shelf.find(object.model))
+        {
+            object.pose = frame_pose_of(object.pose, known->header().origin_m());
+        }
+        objects.push_back(feed_object(object));
     }
     return objects;
 }
