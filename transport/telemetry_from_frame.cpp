@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace tactus
@@ -70,9 +71,21 @@ ModelTelemetry telemetry_of(const ModelOutput& output) noexcept
     return model;
 }
 
-Pose pose_of(const Similarity& place) noexcept
+Pose source_pose_of(const Similarity& place, const Vec3& origin_m) noexcept
 {
-    return {quaternion_of(place.rotation), parts_of(place.translation_m), place.scale};
+    return {quaternion_of(place.rotation), parts_of(place.local_to_world(-origin_m)), place.scale};
+}
+
+Pose frame_pose_of(const Pose& source, const Vec3& origin_m) noexcept
+{
+    const auto& q = source.rotation;
+    const Vec3 rotated_m = Eigen::Quaterniond(q[3], q[0], q[1], q[2]) * origin_m;
+    Pose frame = source;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        frame.translation_m[axis] += source.scale * rotated_m[static_cast<int>(axis)];
+    }
+    return frame;
 }
 
 } // namespace tactus

@@ -20,8 +20,11 @@ namespace tactus
 [[nodiscard]] PairTelemetry telemetry_of(const PairOutput& output) noexcept;
 [[nodiscard]] ModelTelemetry telemetry_of(const ModelOutput& output) noexcept;
 
-/// Pose on the wire of an object's placement.
-[[nodiscard]] Pose pose_of(const Similarity& place) noexcept;
+/// Pose of an object's source mesh. `place` is that of its model's frame, whose origin in the
+/// source mesh is `origin_m` (ModelHeader::origin_m).
+[[nodiscard]] Pose source_pose_of(const Similarity& place, const Vec3& origin_m) noexcept;
+/// Pose of the model's frame: the inverse of source_pose_of().
+[[nodiscard]] Pose frame_pose_of(const Pose& source, const Vec3& origin_m) noexcept;
 
 [[nodiscard]] inline std::array<double, 3> parts_of(const Vec3& vector) noexcept
 {

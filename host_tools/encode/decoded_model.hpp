@@ -5,7 +5,7 @@
 #include "rt_core/spm/base_mesh.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/page.hpp"
-#include "transport/front.hpp"
+#include "transport/refinement_state.hpp"
 #include "transport/store/model_store.hpp"
 
 #include <cstdint>

@@ -53,17 +53,14 @@ constexpr std::array kServerWrites{Right{"catalogue", kUnnamed}, Right{"chunks",
                                    Right{"objects", kOfServers}, Right{"motion", kOfServers},
                                    Right{kEdits, kOfServers}};
 constexpr std::array kServerReads{Right{"catalogue", kUnnamed}, Right{"wanted", kAny},
-                                  Right{"telemetry", kAny}, Right{"refinement_state", kAny},
-                                  Right{kEditRequests, kOfServers}};
-constexpr std::array kControllerWrites{Right{"wanted", kOwn}, Right{"telemetry", kOwn},
-                                       Right{"refinement_state", kOwn}};
+                                  Right{"telemetry", kAny}, Right{kEditRequests, kOfServers}};
+constexpr std::array kControllerWrites{Right{"wanted", kOwn}, Right{"telemetry", kOwn}};
 constexpr std::array kControllerReads{Right{"catalogue", kUnnamed}, Right{"chunks", kOwnPieces},
                                       Right{"objects", kOfServers}, Right{"motion", kOfServers},
                                       Right{kEdits, kOfServers}};
 constexpr std::array kEditorWrites{Right{"wanted", kOwn}, Right{"telemetry", kOwn},
-                                   Right{"refinement_state", kOwn},
                                    Right{kEditRequests, kOfServers}};
-constexpr std::array kViewerReads{Right{"telemetry", kAny}, Right{"refinement_state", kAny}};
+constexpr std::array kViewerReads{Right{"telemetry", kAny}};
 
 struct Rights
 {

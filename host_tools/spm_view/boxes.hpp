@@ -4,7 +4,7 @@
 
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/spm_view/known_model.hpp"
-#include "transport/front.hpp"
+#include "transport/refinement_state.hpp"
 
 #include <cstdint>
 #include <span>

@@ -7,7 +7,7 @@
 #include "host_tools/spm_view/known_model.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/edit_state.hpp"
-#include "transport/front.hpp"
+#include "transport/refinement_state.hpp"
 
 #include <cstdint>
 #include <optional>

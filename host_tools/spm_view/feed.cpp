@@ -78,7 +78,7 @@ public:
         }
         json_[name] = std::move(list);
     }
-    [[nodiscard]] std::string line() const { return json_.dump(); }
+    [[nodiscard]] const nlohmann::ordered_json& json() const noexcept { return json_; }
 
 private:
     nlohmann::ordered_json json_;
@@ -137,10 +137,10 @@ template <typename Fields>
 void tell_feed_tool(Fields& fields, const LiveController& controller, std::size_t number)
 {
     const ToolTelemetry& tool = controller.told.telemetry.tools[number];
-    const bool has_shape =
-        controller.front != nullptr && number < controller.front->front.tools.size();
-    const RefinementStateTool shape =
-        has_shape ? controller.front->front.tools[number] : RefinementStateTool{};
+    const RefinementState* state = controller.state();
+    const RefinementStateTool shape = state != nullptr && number < state->tools.size()
+                                          ? state->tools[number]
+                                          : RefinementStateTool{};
     fields.value("number", static_cast<std::uint32_t>(number));
     fields.flags({{"in_contact", tool.in_contact},
                   {"halted", tool.halted},
@@ -201,13 +201,27 @@ void tell_feed(Fields& fields, const LiveController& controller, const FeedPart&
 std::string feed_json(const LiveController& controller)
 {
     JsonFields fields;
-    tell_feed(fields, controller, {controller.shown});
-    return fields.line();
+    tell_feed(fields, controller, {controller.objects});
+    return fields.json().dump();
+}
+
+nlohmann::ordered_json feed_tool(const LiveController& controller, std::size_t number)
+{
+    JsonFields fields;
+    tell_feed_tool(fields, controller, number);
+    return fields.json();
+}
+
+nlohmann::ordered_json feed_object(const ObjectTelemetry& object)
+{
+    JsonFields fields;
+    tell_feed_object(fields, object);
+    return fields.json();
 }
 
 std::vector<std::string> feed_datagrams(const LiveController& controller)
 {
-    const std::span<const ObjectTelemetry> objects = controller.shown;
+    const std::span<const ObjectTelemetry> objects = controller.objects;
     const std::size_t count =
         std::max<std::size_t>((objects.size() + kFeedObjects - 1) / kFeedObjects, 1);
     std::vector<std::string> datagrams;

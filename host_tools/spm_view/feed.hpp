@@ -7,6 +7,8 @@
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -26,6 +28,11 @@ inline constexpr std::size_t kFeedObjects = 64;
 
 /// Newest state of a controller as one line of JSON, with all its known objects.
 [[nodiscard]] std::string feed_json(const LiveController& controller);
+
+/// The fields of one tool and of one object in feed_json().
+[[nodiscard]] nlohmann::ordered_json feed_tool(const LiveController& controller,
+                                               std::size_t number);
+[[nodiscard]] nlohmann::ordered_json feed_object(const ObjectTelemetry& object);
 
 /// The same fields as datagrams of at most 14,464 bytes: packed little-endian records in the order
 /// of docs/examples/tactus_feed.h. Each has all tools; the objects are divided among them.

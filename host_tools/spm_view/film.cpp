@@ -220,7 +220,7 @@ struct Film::Maker
         }
         moment.pairs_end = static_cast<std::uint32_t>(film.pairs_.size());
         std::ranges::transform(frame->regions(), std::back_inserter(film.regions_),
-                               front_region_of);
+                               shown_region_of);
         moment.regions_end = static_cast<std::uint32_t>(film.regions_.size());
         film.budgets_.set(number, given.budgets);
         take_pages(number);
@@ -289,14 +289,17 @@ private:
     void take_object(std::uint64_t number, std::uint32_t which)
     {
         const Object& object = frame->objects()[which];
-        std::optional<SeenObject> seen;
+        std::optional<ObjectTelemetry> seen;
         if (object.is_resident)
         {
             const std::uint32_t model = object.spec.model.value;
-            seen =
-                SeenObject{{0, which, which, model, pose_of(object.pose)},
-                           film.models_[model].hash,
-                           setup.name_of({RecordedName::Kind::object, which, object.generation})};
+            seen = ObjectTelemetry{
+                0,
+                which,
+                which,
+                setup.name_of({RecordedName::Kind::object, which, object.generation}),
+                film.models_[model].hash,
+                source_pose_of(object.pose, film.origins_m_[model])};
         }
         if (seen || film.objects_.contains(which))
         {
@@ -332,6 +335,7 @@ Result<std::unique_ptr<Film>, Refusal> Film::develop(const std::string& path, st
         const RecordedPieces::Source source{recording, i};
         const auto model = std::make_shared<RecordedPieces>(source, name);
         film->models_.push_back({name, model->hash(), model->header().fields().revision});
+        film->origins_m_.push_back(model->header().origin_m());
         put_on(shelf, model, source);
     }
     film->model_states_.resize(setup.models.size());
@@ -397,7 +401,7 @@ LiveController Film::at(std::uint64_t frame) const
     telemetry.pair_count = static_cast<std::uint32_t>(pairs(frame).size());
     std::ranges::copy(pairs(frame), telemetry.pairs.begin());
     add_models(frame, controller);
-    controller.front = front(frame);
+    controller.told.state = state(frame);
     for (const auto& [number, steps] : objects_)
     {
         if (const auto* seen = steps.at(frame); seen != nullptr && *seen)
@@ -420,29 +424,28 @@ void Film::add_models(std::uint64_t frame, LiveController& controller) const
     }
 }
 
-FrontPointer Film::front(std::uint64_t frame) const
+StatePointer Film::state(std::uint64_t frame) const
 {
     if (frame >= frames())
     {
         return nullptr;
     }
-    auto seen = std::make_shared<dds::SeenFront>();
-    seen->id = id_;
+    auto seen = std::make_shared<dds::SeenState>();
     seen->serial = frame;
-    seen->front.frame = frame + 1;
-    seen->front.time_ns = moments_[frame].time_ns;
-    seen->front.budgets = *budgets_.at(frame);
-    seen->front.tools = shapes_;
-    seen->front.regions.assign(regions(frame).begin(), regions(frame).end());
+    RefinementState& state = seen->state;
+    state.frame = frame + 1;
+    state.budgets = *budgets_.at(frame);
+    state.tools = shapes_;
+    state.regions.assign(regions(frame).begin(), regions(frame).end());
     for (const ModelIdentity& model : models_)
     {
-        seen->front.models.push_back({model.hash, {}, {}});
+        state.models.push_back({model.hash, {}, {}});
     }
     for (const auto& [name, steps] : pages_)
     {
         if (const Page* page = steps.at(frame); page != nullptr && *page)
         {
-            seen->front.models[name.first].pages.push_back({{name.second}, **page});
+            state.models[name.first].pages.push_back({{name.second}, **page});
         }
     }
     return seen;
@@ -620,11 +623,11 @@ Snapshot Films::at(std::uint64_t frame) const
     return snapshot;
 }
 
-FrontPointer Films::front(const std::string& controller, std::uint64_t frame) const
+StatePointer Films::state(const std::string& controller, std::uint64_t frame) const
 {
     const auto found = std::ranges::find_if(films_, [&](const auto& film)
                                             { return id_text(film->id()) == controller; });
-    return found == films_.end() ? nullptr : (*found)->front(frame);
+    return found == films_.end() ? nullptr : (*found)->state(frame);
 }
 
 } // namespace tactus::view

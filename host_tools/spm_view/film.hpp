@@ -65,7 +65,7 @@ public:
     /// State of the controller in a frame; for numbers beyond the end, in the last frame. The
     /// serial of its refinement state is the number of the frame.
     [[nodiscard]] LiveController at(std::uint64_t frame) const;
-    [[nodiscard]] FrontPointer front(std::uint64_t frame) const;
+    [[nodiscard]] StatePointer state(std::uint64_t frame) const;
 
     [[nodiscard]] const dds::ControllerId& id() const noexcept { return id_; }
     [[nodiscard]] const std::string& name() const noexcept { return name_; }
@@ -103,7 +103,7 @@ private:
         std::uint64_t pieces{0}; ///< Hash of the pieces that arrived in the frame.
         std::uint64_t faces{0};  ///< Hash of the models' state hashes.
         /// Number of frames so far with each worst answer, by AnswerKind.
-        std::array<std::uint32_t, 5> answers{};
+        std::array<std::uint32_t, kAnswerKinds> answers{};
         std::uint32_t faults{0};
         std::uint32_t faults_seen{0};
         std::uint32_t pairs_end{0};
@@ -137,6 +137,7 @@ private:
     std::size_t tool_count_{0};
     std::vector<RefinementStateTool> shapes_; ///< Shapes by tool.
     std::vector<ModelIdentity> models_;       ///< Identities by model.
+    std::vector<Vec3> origins_m_;             ///< Origins of the models' frames, by model.
     std::vector<Moment> moments_;             ///< Moments, one for each frame.
     std::vector<ToolTelemetry> tools_;        ///< Tools, tool_count_ for each frame.
     std::vector<PairTelemetry> pairs_; ///< Pairs of all frames; those of a frame end at pairs_end.
@@ -145,7 +146,8 @@ private:
     Timeline<Budgets, SameBudgets> budgets_;
     std::vector<Timeline<ModelTelemetry>> model_states_; ///< States by model.
     std::map<PageName, Timeline<Page>> pages_;
-    std::map<std::uint32_t, Timeline<std::optional<SeenObject>>> objects_; ///< Objects by number.
+    std::map<std::uint32_t, Timeline<std::optional<ObjectTelemetry>>>
+        objects_; ///< Objects by number.
 };
 
 /// First and largest difference of two films in one kind.
@@ -177,7 +179,7 @@ public:
     [[nodiscard]] Snapshot at(std::uint64_t frame) const;
     /// Refinement state of a film, by its id_text(), in a frame; null if there is no such film or
     /// frame.
-    [[nodiscard]] FrontPointer front(const std::string& controller, std::uint64_t frame) const;
+    [[nodiscard]] StatePointer state(const std::string& controller, std::uint64_t frame) const;
 
 private:
     std::vector<std::unique_ptr<Film>> films_;

@@ -2,8 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_view/force_words.hpp"
 
-#include "transport/force_off_words.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

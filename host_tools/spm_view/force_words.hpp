@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "transport/front.hpp"
+#include "transport/refinement_state.hpp"
 #include "transport/telemetry.hpp"
 
 #include <span>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "host_tools/spm_view/model_shelf.hpp"
-#include "transport/dds/front.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <chrono>
@@ -20,28 +19,21 @@
 namespace tactus::view
 {
 
-using FrontPointer = std::shared_ptr<const dds::SeenFront>;
-
-/// Newest known state of one object.
-struct SeenObject
-{
-    RefinementStateObject object;
-    ContentHash model{};
-    std::string name{}; ///< Name in a recording; empty for live data.
-
-    bool operator==(const SeenObject&) const = default;
-};
+using StatePointer = std::shared_ptr<const dds::SeenState>;
 
 /// Present state of one controller.
 struct LiveController
 {
     dds::WatchedController told;
-    FrontPointer front;              ///< Refinement state; null if none was received.
-    std::vector<SeenObject> objects; ///< Objects, ascending by their number on the controller.
-    /// The same objects as telemetry reports them, more often; empty for a recording.
-    std::vector<ObjectTelemetry> shown;
+    std::vector<ObjectTelemetry> objects; ///< All objects, ascending by their number.
     /// True for a recording, which lacks times, deadlines and the causes of fades.
     bool is_recorded{false};
+
+    /// Refinement state; null if none was received.
+    [[nodiscard]] const RefinementState* state() const noexcept
+    {
+        return told.state != nullptr ? &told.state->state : nullptr;
+    }
 };
 
 /// State of all controllers at one moment.
@@ -60,14 +52,13 @@ class LiveState
 {
 public:
     /// Maximum number of stored refinement states of one controller: 10 a second for a minute.
-    static constexpr std::size_t kFronts = 600;
+    static constexpr std::size_t kStates = 600;
     /// Maximum bytes of all stored refinement states. Those being read take memory in addition.
-    static constexpr std::size_t kFrontBytes = std::size_t{64} << 20U;
+    static constexpr std::size_t kStateBytes = std::size_t{64} << 20U;
 
     /// Publishes a snapshot if the data changed. Only the thread that receives DDS data may call
     /// it.
-    void publish(const std::vector<dds::WatchedController>& told,
-                 const std::vector<dds::SeenFront>& fronts);
+    void publish(const std::vector<dds::WatchedController>& told);
 
     /// The newest snapshot; never null.
     [[nodiscard]] std::shared_ptr<const Snapshot> newest() const;
@@ -76,29 +67,26 @@ public:
     wait_newer(std::uint64_t seen, std::chrono::milliseconds patience) const;
 
     /// Stored refinement state of a controller by its serial; null if it is not stored.
-    [[nodiscard]] FrontPointer front(const std::string& controller, std::uint64_t serial) const;
+    [[nodiscard]] StatePointer state(const std::string& controller, std::uint64_t serial) const;
 
 private:
     struct Kept
     {
-        std::deque<FrontPointer> fronts;
-        std::size_t bytes{0};
-        std::map<std::uint32_t, SeenObject> objects;
+        std::deque<StatePointer> states;
+        std::size_t bytes{0}; ///< Bytes of `states`.
+        std::map<std::uint32_t, ObjectTelemetry> objects;
     };
 
-    static void add_objects(Kept& kept, const RefinementState& front);
-    /// True if the controllers or their data changed since the last snapshot.
-    [[nodiscard]] bool is_news(const std::vector<dds::WatchedController>& told,
-                               const std::vector<dds::SeenFront>& fronts) const;
-    void keep(const dds::SeenFront& front);
+    void keep(const dds::WatchedController& controller);
 
     mutable std::mutex mutex_;
     mutable std::condition_variable news_;
     std::shared_ptr<const Snapshot> snapshot_{std::make_shared<Snapshot>()};
     std::map<dds::ControllerId, Kept> kept_;
-    /// Objects of each controller in its telemetry, by their number on the controller.
-    std::map<dds::ControllerId, std::map<std::uint32_t, ObjectTelemetry>> shown_;
 };
+
+/// The model's part of a refinement state; without pages and requests if the state lacks it.
+[[nodiscard]] RefinementStateModel model_in(const RefinementState& state, const ContentHash& hash);
 
 /// Text of a controller's id in hexadecimal digits.
 [[nodiscard]] std::string id_text(const dds::ControllerId& id);

@@ -11,7 +11,6 @@
 #include "platform/program/run_program.hpp"
 #include "platform/program/stop_signals.hpp"
 #include "transport/base/program_log.hpp"
-#include "transport/dds/front.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <fmt/format.h>
@@ -60,26 +59,34 @@ private:
 struct Ears
 {
     std::unique_ptr<dds::TelemetryReader> telemetry;
-    std::unique_ptr<dds::RefinementStateReader> fronts;
     std::unique_ptr<ModelFetcher> models; ///< Null if this program may not request pieces.
     std::optional<FeedSender> feed;       ///< None without --feed-udp.
 };
 
+/// Requests the models of the refinement state and of the objects in the newest sample.
+void look_for_models(ModelFetcher& models, const dds::WatchedController& controller)
+{
+    for (const RefinementStateModel& model : controller.state->state.models)
+    {
+        models.look_for(model.hash);
+    }
+    for (const ObjectTelemetry& object : controller.objects.objects)
+    {
+        models.look_for(object.model);
+    }
+}
+
 void look(Ears& ears, LiveState& live)
 {
     ears.telemetry->poll();
-    ears.fronts->poll();
-    for (const dds::SeenFront& seen : ears.fronts->fronts())
+    live.publish(ears.telemetry->controllers());
+    for (const dds::WatchedController& controller : ears.telemetry->controllers())
     {
-        for (const RefinementStateModel& model : seen.front.models)
+        if (ears.models != nullptr && controller.state != nullptr)
         {
-            if (ears.models != nullptr)
-            {
-                ears.models->look_for(model.hash);
-            }
+            look_for_models(*ears.models, controller);
         }
     }
-    live.publish(ears.telemetry->controllers(), ears.fronts->fronts());
     if (ears.feed)
     {
         ears.feed->send(*live.newest());
@@ -109,16 +116,15 @@ void watch(Ears& ears, LiveState& live, const Stay& stay)
 
 Result<Ears, Refusal> listen(const dds::Domain& domain, ModelShelf& shelf)
 {
-    auto telemetry = dds::TelemetryReader::create(domain);
-    auto fronts = dds::RefinementStateReader::create(domain);
+    auto telemetry = dds::TelemetryReader::create(domain, true);
     auto models = ModelFetcher::create(domain, shelf,
                                        [](const std::string& text)
                                        { log_message(LogLevel::warning, "spm_view", text); });
-    if (!telemetry || !fronts)
+    if (!telemetry)
     {
-        return telemetry ? fronts.error() : telemetry.error();
+        return telemetry.error();
     }
-    Ears ears{std::move(telemetry).value(), std::move(fronts).value(), nullptr, std::nullopt};
+    Ears ears{std::move(telemetry).value(), nullptr, std::nullopt};
     if (models)
     {
         ears.models = std::move(models).value();

@@ -3,10 +3,12 @@
 #include "host_tools/spm_view/state_text.hpp"
 
 #include "host_tools/spm_view/cut.hpp"
+#include "host_tools/spm_view/feed.hpp"
 #include "host_tools/spm_view/force_words.hpp"
 #include "host_tools/web/prometheus_text.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "transport/content_hash.hpp"
+#include "transport/telemetry_from_frame.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +17,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,8 +29,6 @@ namespace
 {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::array kKindNames{"exact", "separated", "bounded", "stale", "within_tolerance"};
 
 /// Name of member `i` of RefinementState::times: the stages, the frame, its CPU time.
 const char* time_name(std::size_t i)
@@ -55,36 +56,25 @@ Json faults_of(std::uint32_t bits)
     return names;
 }
 
+/// Fields of the feed, and words about the force; null without a refinement state.
 Json tool_json(const LiveController& controller, std::size_t i)
 {
     const Telemetry& telemetry = controller.told.telemetry;
-    const ToolTelemetry& tool = telemetry.tools[i];
-    Json json{{"position_m", tool.position_m},
-              {"rotation", tool.rotation},
-              {"proxy_m", tool.proxy_m},
-              {"proxy_rotation", tool.proxy_rotation},
-              {"force_n", tool.force_n},
-              {"torque_nm", tool.torque_nm},
-              {"in_contact", tool.in_contact},
-              {"halted", tool.halted},
-              {"over_constrained", tool.over_constrained},
-              {"data_limited", tool.data_limited},
-              {"buttons", tool.buttons},
-              {"words", nullptr},
-              {"state", nullptr},
-              {"shape", nullptr},
-              {"radius_m", nullptr}};
-    if (controller.front != nullptr && i < controller.front->front.tools.size())
+    Json json = feed_tool(controller, i);
+    json["state"] = nullptr;
+    json["words"] = nullptr;
+    const RefinementState* state = controller.state();
+    if (state == nullptr || i >= state->tools.size())
     {
-        const RefinementStateTool& front = controller.front->front.tools[i];
-        if (!controller.is_recorded)
-        {
-            json["state"] = kSafetyStateNames[static_cast<std::size_t>(front.state)];
-            json["words"] =
-                force_words(front, tool, std::span(telemetry.models).first(telemetry.model_count));
-        }
-        json["shape"] = front.shape;
-        json["radius_m"] = front.radius_m;
+        json["shape"] = nullptr;
+        json["radius_m"] = nullptr;
+    }
+    else if (!controller.is_recorded)
+    {
+        const RefinementStateTool& tool = state->tools[i];
+        json["state"] = kSafetyStateNames[static_cast<std::size_t>(tool.state)];
+        json["words"] = force_words(tool, telemetry.tools[i],
+                                    std::span(telemetry.models).first(telemetry.model_count));
     }
     return json;
 }
@@ -98,7 +88,7 @@ Json pairs_json(const Telemetry& telemetry)
         pairs.push_back({{"tool", pair.tool},
                          {"server", fmt::format("{:016x}", pair.server_epoch)},
                          {"object", pair.object},
-                         {"kind", kKindNames[static_cast<std::size_t>(pair.kind)]},
+                         {"kind", kAnswerNames[static_cast<std::size_t>(pair.kind)]},
                          {"lower_m", number_of(pair.lower_m)},
                          {"upper_m", number_of(pair.upper_m)},
                          {"point_m", pair.point_m},
@@ -126,19 +116,36 @@ Json models_json(const dds::WatchedController& told)
     return models;
 }
 
-Json cuts_json(const RefinementState& front, const ModelShelf& shelf)
+/// Models of the refinement state, then other models of objects.
+std::vector<ContentHash> models_of(const LiveController& controller, const RefinementState& state)
+{
+    std::vector<ContentHash> models;
+    std::ranges::transform(state.models, std::back_inserter(models), &RefinementStateModel::hash);
+    for (const ObjectTelemetry& object : controller.objects)
+    {
+        if (std::ranges::find(models, object.model) == models.end())
+        {
+            models.push_back(object.model);
+        }
+    }
+    return models;
+}
+
+Json cuts_json(const LiveController& controller, const RefinementState& state,
+               const ModelShelf& shelf)
 {
     Json cuts = Json::array();
-    for (const RefinementStateModel& model : front.models)
+    for (const ContentHash& hash : models_of(controller, state))
     {
+        const RefinementStateModel model = model_in(state, hash);
         int refined = 0;
         for (const RefinementStatePage& page : model.pages)
         {
             refined += std::popcount(page.refined);
         }
-        const auto known = shelf.find(model.hash);
+        const auto known = shelf.find(hash);
         const std::uint32_t edits = known != nullptr ? known->edit_revision() : 0;
-        cuts.push_back({{"hash", hash_text(model.hash)},
+        cuts.push_back({{"hash", hash_text(hash)},
                         {"is_resident", known != nullptr},
                         {"cut", fmt::format("{:016x}{}", cut_id(model.pages),
                                             edits > 0 ? fmt::format("-{}", edits) : "")},
@@ -150,12 +157,12 @@ Json cuts_json(const RefinementState& front, const ModelShelf& shelf)
     return cuts;
 }
 
-Json regions_json(const RefinementState& front)
+Json regions_json(const RefinementState& state)
 {
     Json regions = Json::array();
-    for (const RefinementStateRegion& region : front.regions)
+    for (const RefinementStateRegion& region : state.regions)
     {
-        regions.push_back({{"model", hash_text(front.models[region.model].hash)},
+        regions.push_back({{"model", hash_text(state.models[region.model].hash)},
                            {"is_predicted", region.is_predicted},
                            {"center_m", region.center_m},
                            {"radius_m", region.radius_m}});
@@ -163,50 +170,48 @@ Json regions_json(const RefinementState& front)
     return regions;
 }
 
-Json objects_json(const LiveController& controller)
+/// Fields of the feed, with the poses of the models' frames, in which the page draws faces.
+Json objects_json(const LiveController& controller, const ModelShelf& shelf)
 {
     Json objects = Json::array();
-    for (const SeenObject& seen : controller.objects)
+    for (ObjectTelemetry object : controller.objects)
     {
-        objects.push_back({{"server", fmt::format("{:016x}", seen.object.server_epoch)},
-                           {"object", seen.object.object},
-                           {"number", seen.object.number},
-                           {"name", seen.name},
-                           {"model", hash_text(seen.model)},
-                           {"rotation", seen.object.pose.rotation},
-                           {"translation_m", seen.object.pose.translation_m},
-                           {"scale", seen.object.pose.scale}});
+        if (const auto known = shelf.find(object.model))
+        {
+            object.pose = frame_pose_of(object.pose, known->header().origin_m());
+        }
+        objects.push_back(feed_object(object));
     }
     return objects;
 }
 
 Json refinement_state_json(const LiveController& controller, const ModelShelf& shelf)
 {
-    if (controller.front == nullptr)
+    if (controller.told.state == nullptr)
     {
         return nullptr;
     }
-    const RefinementState& front = controller.front->front;
+    const RefinementState& state = controller.told.state->state;
     Json times = nullptr;
     for (std::size_t i = 0; i < kFrontTimes && !controller.is_recorded; ++i)
     {
-        times[time_name(i)] = {front.times[i].mean_ns * 1e-3, front.times[i].max_ns * 1e-3};
+        times[time_name(i)] = {state.times[i].mean_ns * 1e-3, state.times[i].max_ns * 1e-3};
     }
-    return {{"serial", controller.front->serial},
-            {"frame", front.frame},
+    return {{"serial", controller.told.state->serial},
+            {"frame", state.frame},
             {"times_us", times},
             {"budgets",
-             {{"splits", front.budgets.splits},
-              {"merges", front.budgets.merges},
-              {"nodes", front.budgets.nodes},
-              {"triangles", front.budgets.triangles},
-              {"pages", front.budgets.pages},
-              {"requests", front.budgets.requests}}},
-            {"slots_left_out", front.slots_left_out},
-            {"regions_left_out", front.regions_left_out},
-            {"models", cuts_json(front, shelf)},
-            {"regions", regions_json(front)},
-            {"objects", objects_json(controller)}};
+             {{"splits", state.budgets.splits},
+              {"merges", state.budgets.merges},
+              {"nodes", state.budgets.nodes},
+              {"triangles", state.budgets.triangles},
+              {"pages", state.budgets.pages},
+              {"requests", state.budgets.requests}}},
+            {"slots_left_out", state.slots_left_out},
+            {"regions_left_out", state.regions_left_out},
+            {"models", cuts_json(controller, state, shelf)},
+            {"regions", regions_json(state)},
+            {"objects", objects_json(controller, shelf)}};
 }
 
 Json deadlines_json(const Telemetry& telemetry)
@@ -258,22 +263,22 @@ std::string waits_for(const LiveController* controller, const ModelShelf& shelf,
                          domain_id)
                    : "the chosen controller, which disconnected";
     }
-    if (controller->front == nullptr)
+    const RefinementState* state = controller->state();
+    if (state == nullptr)
     {
         return fmt::format("the refinement state of {}: the controller runs with "
                            "--no-refinement-state or is older than this viewer",
                            controller->told.name);
     }
-    for (const RefinementStateModel& model : controller->front->front.models)
+    for (const ContentHash& model : models_of(*controller, *state))
     {
-        if (!shelf.has(model.hash))
+        if (!shelf.has(model))
         {
-            return shelf.is_coming(model.hash)
-                       ? fmt::format("the base mesh of model {}, from its server",
-                                     hash_text(model.hash))
+            return shelf.is_coming(model)
+                       ? fmt::format("the base mesh of model {}, from its server", hash_text(model))
                        : fmt::format("the model {}: no server publishes it on this domain; give "
                                      "its file to spm_view",
-                                     hash_text(model.hash));
+                                     hash_text(model));
         }
     }
     return "";

@@ -392,8 +392,8 @@ void WebServer::Impl::send_built(const httplib::Request& request, httplib::Respo
         return;
     }
     const std::string controller = request.get_param_value("controller");
-    const FrontPointer seen = parts.films != nullptr ? parts.films->front(controller, *serial)
-                                                     : parts.live.front(controller, *serial);
+    const StatePointer seen = parts.films != nullptr ? parts.films->state(controller, *serial)
+                                                     : parts.live.state(controller, *serial);
     const auto model = parts.shelf.find(*hash);
     if (seen == nullptr || model == nullptr)
     {
@@ -402,9 +402,7 @@ void WebServer::Impl::send_built(const httplib::Request& request, httplib::Respo
                                : "the model is not loaded");
         return;
     }
-    const auto found = std::ranges::find(seen->front.models, *hash, &RefinementStateModel::hash);
-    const RefinementStateModel front =
-        found == seen->front.models.end() ? RefinementStateModel{*hash, {}, {}} : *found;
+    const RefinementStateModel front = model_in(seen->state, *hash);
     // Boxes of chunks depend on the numbers of the chunks, not on the split records.
     std::uint64_t chunks = 0xCBF2'9CE4'8422'2325U;
     for (const ChunkId chunk : what == "loaded"      ? chunks_of(front.pages)
@@ -416,7 +414,7 @@ void WebServer::Impl::send_built(const httplib::Request& request, httplib::Respo
     const std::string name = fmt::format("{} {} {:016x} {:016x} {}", what, hash_text(*hash),
                                          cut_id(front.pages), chunks, model->edit_revision());
     const auto bytes =
-        built(name, [&] { return build(*model, front, seen->front.slots_left_out == 0); });
+        built(name, [&] { return build(*model, front, seen->state.slots_left_out == 0); });
     if (!bytes)
     {
         answer(response, 409, bytes.error().text);

@@ -4,7 +4,6 @@
 
 #include "platform/controller/controller.hpp"
 #include "platform/controller/cut_sender.hpp"
-#include "platform/controller/refinement_state_sender.hpp"
 #include "platform/loop/edit_mailbox.hpp"
 #include "platform/loop/scene_mailbox.hpp"
 #include "platform/loop/telemetry_tap.hpp"
@@ -70,12 +69,7 @@ ServerTopics::create(dds::DdsClient& client, const Controller& controller,
     topics->edits_ = edit_reader(client, controller, log);
     if (shows_refinement_state)
     {
-        auto front = RefinementStateSender::create(client, controller);
-        if (!front)
-        {
-            return front.error();
-        }
-        topics->front_ = std::move(front).value();
+        topics->states_.emplace(controller);
     }
     return topics;
 }
@@ -99,16 +93,16 @@ ServerTopics::ServerTopics(const dds::DdsClient& client, const Controller& contr
 ServerTopics::~ServerTopics() = default;
 
 void ServerTopics::connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
-                           RefinementStateTap* front, MonotonicTime now,
+                           RefinementStateTap* states, MonotonicTime now,
                            SceneKeeper::NameSink names)
 {
     tap_ = &tap;
     TACTUS_ASSERT(edits != nullptr || edits_ == nullptr);
     edit_mailbox_ = edits;
-    if (front_ != nullptr)
+    if (states_)
     {
-        TACTUS_ASSERT(front != nullptr);
-        front_->connect(*front);
+        TACTUS_ASSERT(states != nullptr);
+        states_->connect(*states);
     }
     if (keeper_ != nullptr)
     {
@@ -139,9 +133,9 @@ CutTap* ServerTopics::cut_tap() noexcept
 
 void ServerTopics::tell_begins_inside(std::size_t tool) noexcept
 {
-    if (front_ != nullptr)
+    if (states_)
     {
-        front_->tell_begins_inside(tool);
+        states_->tell_begins_inside(tool);
     }
 }
 
@@ -176,10 +170,6 @@ void ServerTopics::step(MonotonicTime now)
         is_renewed_ = true;
         renew_objects(false);
     }
-    if (front_ != nullptr)
-    {
-        front_->step(now, keeper_.get());
-    }
 }
 
 std::vector<dds::PoseCounts> ServerTopics::pose_counts() const
@@ -211,11 +201,6 @@ std::vector<dds::ServerEvent> ServerTopics::server_events() const
 std::vector<dds::PeerRefusals> ServerTopics::refused() const
 {
     return client_.domain().participants().refusals().list();
-}
-
-std::uint64_t ServerTopics::states_sent() const noexcept
-{
-    return front_ != nullptr ? front_->sent() : 0;
 }
 
 std::vector<dds::EditReader::Counts> ServerTopics::edit_counts() const
@@ -287,7 +272,9 @@ void ServerTopics::send_telemetry(MonotonicTime now)
     {
         name_server(telemetry.pairs[i].server_epoch, telemetry.pairs[i].object);
     }
-    telemetry_->write(telemetry, take_objects());
+    const std::optional<RefinementState> state =
+        states_ ? states_->take(now, *telemetry_) : std::nullopt;
+    telemetry_->write(telemetry, take_objects(), state ? &*state : nullptr);
 }
 
 void ServerTopics::add_transport_side(std::size_t model, ModelTelemetry& telemetry,
@@ -337,12 +324,10 @@ ObjectsTelemetry ServerTopics::take_objects()
         {
             const ServedModel& model = controller_.models()[object.model];
             const auto name = names_.find(object.number);
-            Similarity place = object.pose;
-            place.translation_m = place.local_to_world(-origins_m_[object.model]);
             ObjectTelemetry& told = shown.objects.emplace_back(
                 ObjectTelemetry{0, object.number, object.number,
                                 printable(name != names_.end() ? name->second : model.name),
-                                model.hash, pose_of(place)});
+                                model.hash, source_pose_of(object.pose, origins_m_[object.model])});
             name_server(told.server_epoch, told.object);
         }
     }

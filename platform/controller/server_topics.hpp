@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/controller/refinement_state_source.hpp"
 #include "platform/controller/run_results.hpp"
 #include "platform/machine/time.hpp"
 #include "platform/scene/scene_keeper.hpp"
@@ -44,8 +45,6 @@ namespace tactus::hrtc
 class Controller;
 class CutSender;
 class CutTap;
-class RefinementStateSender;
-class RefinementStateTap;
 class TelemetryTap;
 
 /// Topics between a controller and its servers and viewers, except those of models. Servers move
@@ -73,10 +72,10 @@ public:
     ~ServerTopics();
 
     /// Connects the topics to the mailbox and taps of the haptic thread, which must live as long as
-    /// the run. `front` may be null if shows_refinement_state() is false. `names` receives the
+    /// the run. `states` may be null if shows_refinement_state() is false. `names` receives the
     /// names of objects added later, and may be empty. `edits` may be null if has_edits() is false.
     void connect(SceneMailbox& mailbox, EditMailbox* edits, TelemetryTap& tap,
-                 RefinementStateTap* front, MonotonicTime now, SceneKeeper::NameSink names = {});
+                 RefinementStateTap* states, MonotonicTime now, SceneKeeper::NameSink names = {});
     /// Reports to viewers that the tool began inside a closed object. Any thread.
     void tell_begins_inside(std::size_t tool) noexcept;
     /// Names an object for viewers; others have the names of their models. Any thread but the
@@ -89,10 +88,10 @@ public:
     [[nodiscard]] CutTap* cut_tap() noexcept;
     /// True if a model of a server has room for faces that edits add.
     [[nodiscard]] bool has_edits() const noexcept { return edits_ != nullptr; }
-    [[nodiscard]] bool shows_refinement_state() const noexcept { return front_ != nullptr; }
+    [[nodiscard]] bool shows_refinement_state() const noexcept { return states_.has_value(); }
 
-    /// Passes poses to the mailbox, and publishes telemetry and refinement state when their periods
-    /// have passed. Transport thread, after the chunk loader's round.
+    /// Passes poses to the mailbox, and publishes telemetry, with the refinement state as an
+    /// optional part, when its period has passed. Transport thread, after the chunk loader's round.
     void step(MonotonicTime now);
 
     /// Counts of poses, one entry a model; empty if poses aren't followed. Not during a step.
@@ -108,7 +107,7 @@ public:
     /// Events of the servers with authority, in order of time.
     [[nodiscard]] std::vector<dds::ServerEvent> server_events() const;
     [[nodiscard]] std::uint64_t telemetry_sent() const noexcept { return telemetry_->sent(); }
-    [[nodiscard]] std::uint64_t states_sent() const noexcept;
+    [[nodiscard]] std::uint64_t states_sent() const noexcept { return telemetry_->states_sent(); }
 
 private:
     /// Number of pieces of one model, and the sum of their waiting times, when telemetry was last
@@ -141,7 +140,7 @@ private:
     dds::EditWriter requests_;
     EditMailbox* edit_mailbox_{nullptr};
     std::unique_ptr<dds::TelemetryWriter> telemetry_;
-    std::unique_ptr<RefinementStateSender> front_; ///< Null if no viewer gets it.
+    std::optional<RefinementStateSource> states_; ///< None if no viewer gets states.
     TelemetryTap* tap_{nullptr};
     /// True if the copy of the objects' poses was made while there was a reader.
     bool has_new_objects_{false};

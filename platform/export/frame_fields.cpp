@@ -16,7 +16,6 @@ namespace tactus
 namespace
 {
 
-constexpr std::array kAnswerNames{"exact", "separated", "bounded", "stale", "within_tolerance"};
 constexpr std::array kFeatureNames{"corner_0", "corner_1", "corner_2", "edge_0",
                                    "edge_1",   "edge_2",   "interior"};
 constexpr std::array kSideNames{"unsigned", "outside", "inside"};

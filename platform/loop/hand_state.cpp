@@ -2,8 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/loop/hand_state.hpp"
 
-#include "transport/force_off_words.hpp"
-
 #include <algorithm>
 #include <bit>
 

@@ -356,7 +356,7 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
     }
     if (parts_.front != nullptr)
     {
-        parts_.front->show({frame_, start, *parts_.frame, output, forces_, measures_.budgets},
+        parts_.front->show({frame_, parts_.frame->regions(), forces_, measures_.budgets},
                            statistics_);
     }
     if (parts_.cuts != nullptr)

@@ -14,7 +14,7 @@
 #include "rt_core/records/safety.hpp"
 #include "rt_core/records/tool_force.hpp"
 #include "rt_core/spm/page_pool.hpp"
-#include "transport/front.hpp"
+#include "transport/refinement_state.hpp"
 
 #include <array>
 #include <atomic>
@@ -34,15 +34,9 @@ class ObjectTable;
 namespace tactus::hrtc
 {
 
-/// Copy of one frame's refinement state. Models and objects have the controller's numbers.
+/// Copy of one frame's refinement state. Models have the controller's numbers.
 struct RefinementStateCopy
 {
-    struct Object
-    {
-        std::uint32_t number{0};
-        std::uint32_t model{0};
-        Similarity pose; ///< Pose of the model's frame.
-    };
     struct Tool
     {
         SafetyState state{SafetyState::reset};
@@ -59,13 +53,9 @@ struct RefinementStateCopy
     using AllTimes = std::array<Times, kFrontTimes>;
 
     std::uint64_t frame{0};
-    MonotonicTime start;
     AllTimes times{};
     Budgets budgets;
     StaticVector<Tool, kMaxTools> tools;
-    std::uint32_t sweep_begin{0};
-    std::uint32_t sweep_end{0};
-    StaticVector<Object, kMaxStateObjects> objects;
     StaticVector<RefinementStateRegion, kMaxStateRegions> regions; ///< Regions of highest priority.
     std::uint32_t regions_left_out{0};                             ///< Number of other regions.
     /// First page slots of the pool.
@@ -89,17 +79,14 @@ public:
     struct ShownFront
     {
         std::uint64_t frame; ///< Number of the frame, from 0.
-        MonotonicTime start;
-        const Frame& made;
-        const FrameOutput& output;
+        std::span<const RankedRegion> regions;
         std::span<const ToolForce> forces; ///< Forces, one a tool.
         const Budgets& budgets;
     };
 
     /// Haptic thread, after a frame: makes a copy if the frame's number is a multiple of kFrames
     /// and the last copy was given back. A copy takes 16 bytes of each page slot that has changed
-    /// since the last one. It visits the awake pairs, kMaxStateRegions regions and kFrontSweep
-    /// objects once. Allocates nothing.
+    /// since the last one, and kMaxStateRegions regions. Allocates nothing.
     void show(const ShownFront& shown, const RunStatistics& statistics) noexcept
     {
         // Pairs with the release in give_back().
@@ -124,9 +111,7 @@ public:
 private:
     void copy(const ShownFront& shown, const RunStatistics& statistics) noexcept;
     void copy_times(const RunStatistics& statistics) noexcept;
-    void copy_objects(const ShownFront& shown) noexcept;
     void copy_regions(std::span<const RankedRegion> regions) noexcept;
-    void copy_object(const ObjectTable& objects, std::uint32_t number) noexcept;
 
     PagePool& pages_;
     std::atomic<bool> is_out_{false};

@@ -66,11 +66,9 @@ using SummaryFacts = std::vector<std::pair<std::string, std::string>>;
 /// safety event; earlier ones are negative.
 [[nodiscard]] nlohmann::ordered_json servers_of(const FinishedRun& run);
 
-/// Word of the summary or the verdict, and its meaning.
-using ReportWord = std::pair<const char*, const char*>;
-
-/// Words of the page that a reader may not know: answers, times, causes of a fade.
-[[nodiscard]] std::span<const ReportWord> report_words() noexcept;
+/// Words of the page that a reader may not know, with their meanings: answers, times, causes of a
+/// fade.
+[[nodiscard]] SummaryFacts report_words();
 
 /// Percentiles of the histogram in microseconds, as text in the format of HdrHistogram (.hgrm) for
 /// its plotter and other readers. Each halving of the share above a percentile has five lines.

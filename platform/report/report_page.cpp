@@ -341,13 +341,8 @@ std::string make_page(const Json& report, const RunStatistics& statistics,
     add_list("Messages refused from others on the domain", report["refused"], columns_of, page);
     add_list("Safety events", report["safety"]["events"], table_of, page);
     add_list("Noted cycles", report["deadline"]["noted"], table_of, page);
-    SummaryFacts words;
-    for (const auto& [word, meaning] : report_words())
-    {
-        words.emplace_back(word, meaning);
-    }
     page.heading("Words");
-    page.table(plot::facts(words));
+    page.table(plot::facts(report_words()));
     page.paragraph(fmt::format("Report schema {}, {} frames of {} ns, {} s.",
                                report["schema"].get<int>(), report["frames"].get<std::uint64_t>(),
                                report["period_ns"].get<std::int64_t>(),

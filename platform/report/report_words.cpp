@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/report/report.hpp"
+#include "rt_core/records/safety.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <iterator>
+#include <utility>
 
 namespace tactus::hrtc
 {
@@ -8,14 +15,13 @@ namespace tactus::hrtc
 namespace
 {
 
-constexpr ReportWord kWords[] = {
+constexpr std::pair<const char*, const char*> kWords[] = {
     {"exact", "answer: the distance to the source mesh, up to rounding; good"},
     {"separated", "answer: the surface is proven to lie beyond the tool's reach; good"},
     {"bounded",
      "answer: two bounds of the distance, because data was missing or the work budget was spent"},
     {"within", "answer: as exact, but with coarser faces whose error is within the tolerance"},
-    {"stale", "answer: the pose of a moved object is too old. Force off: a stale answer in touch, "
-              "or no new sample of the device for 20 ms"},
+    {"stale", "answer: the pose of a moved object is too old"},
     {"in contact", "share of the frames in which a tool touched an object"},
     {"with a force", "share of the frames in which a contact gave a force"},
     {"data-limited",
@@ -33,30 +39,21 @@ constexpr ReportWord kWords[] = {
     {"arrival", "time from the request for a piece of a model to its arrival"},
     {"static", "model that is loaded as a whole: it needs no server during the contact"},
     {"forces softened", "the stiffness was lowered to the stiffness limit of the device"},
-    {"velocity", "force off: the hand was faster than --speed-limit or the limit of the device"},
-    {"watchdog",
-     "force off: the device makes no force; it was braked by the supervisor or by itself"},
-    {"software", "force off: the end of the run"},
-    {"disconnect", "force off: the device was disconnected"},
-    {"deadman", "force off: the user does not hold the device"},
-    {"garbage", "force off: an invalid sample or force"},
-    {"stall", "force off: frames were missed, mostly because of the machine"},
-    {"server", "force off: the server was lost, and the model is not loaded as a whole"},
-    {"assertion", "force off: an internal check found a bug"},
-    {"jump", "force off: an object at the tool was removed or moved too far or too fast"},
-    {"halted", "force off: the surface at the tool is not loaded yet"},
-    {"over_constrained", "force off: objects leave the tool no room"},
-    {"clutch", "force off: the button of --clutch is held"},
-    {"starved", "force off: a piece of the model at the tool did not arrive within a second"},
-    {"growth", "force limited: it would have grown faster than the hand and the objects moved"},
     {"supervisor", "thread that brakes the devices if the loop stops"},
 };
 
 } // namespace
 
-std::span<const ReportWord> report_words() noexcept
+SummaryFacts report_words()
 {
-    return kWords;
+    SummaryFacts words(std::begin(kWords), std::end(kWords));
+    for (std::size_t cause = 0; cause < kForceOffs; ++cause)
+    {
+        const auto& [why, back] = kForceOffWords[cause];
+        words.emplace_back(kForceOffNames[cause],
+                           fmt::format("force off: {}; returns {}", why, back));
+    }
+    return words;
 }
 
 } // namespace tactus::hrtc

@@ -10,6 +10,7 @@
 #include "rt_core/spm/ids.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -40,6 +41,11 @@ enum class AnswerKind : std::uint8_t
     /// error is subtracted from L, and U comes from exact faces and from corners.
     within_tolerance,
 };
+inline constexpr std::size_t kAnswerKinds = 5;
+/// Names of the kinds, in the order of AnswerKind.
+inline constexpr std::array<const char*, kAnswerKinds> kAnswerNames{"exact", "separated", "bounded",
+                                                                    "stale", "within_tolerance"};
+static_assert(static_cast<std::size_t>(AnswerKind::within_tolerance) == kAnswerKinds - 1);
 
 /// The distance from a tool's core to a model, in the model's frame and metres.
 struct DistanceAnswer

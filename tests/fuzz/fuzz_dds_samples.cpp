@@ -10,7 +10,6 @@
 #include "transport/dds/catalogue.hpp"
 #include "transport/dds/edit_publisher.hpp"
 #include "transport/dds/edit_reader.hpp"
-#include "transport/dds/front.hpp"
 #include "transport/dds/piece_frame.hpp"
 #include "transport/dds/placement.hpp"
 #include "transport/dds/scene_reader.hpp"
@@ -162,6 +161,61 @@ bool take(const tactus_v5_Pieces& pieces)
     return !reader.is_broken();
 }
 
+void check(const RefinementStateModel& model)
+{
+    for (std::size_t i = 0; i < model.pages.size(); ++i)
+    {
+        require(model.pages[i].chunk.value <= kMaxRecords / kRecordsPerChunk &&
+                    (i == 0 || model.pages[i - 1].chunk < model.pages[i].chunk),
+                "pages are possible and ascend");
+    }
+    for (std::size_t i = 0; i < model.requested.size(); ++i)
+    {
+        require(model.requested[i].value <= kMaxRecords / kRecordsPerChunk &&
+                    (i == 0 || model.requested[i - 1] < model.requested[i]),
+                "requests are possible and ascend");
+    }
+}
+
+void check(const RefinementState& state, const tactus_v5_RefinementState& part)
+{
+    for (const FrontTimes& times : state.times)
+    {
+        require(std::isfinite(times.mean_ns) && times.mean_ns >= 0.0 &&
+                    std::isfinite(times.max_ns) && times.max_ns >= 0.0,
+                "times are amounts");
+    }
+    require(state.tools.size() <= kMaxTools && state.models.size() <= kMaxModels &&
+                state.regions.size() <= kMaxStateRegions,
+            "counts fit their bounds");
+    for (const RefinementStateTool& tool : state.tools)
+    {
+        require(static_cast<std::size_t>(tool.state) < kSafetyStates &&
+                    static_cast<std::uint32_t>(tool.causes) < 1U << kForceOffs,
+                "a tool has a known state");
+        require(std::isfinite(tool.radius_m) && tool.radius_m >= 0.0, "a radius is an amount");
+        require(tool.shape.size() <= kMaxShapeBytes &&
+                    (tool.shape.empty() || is_one_clear_line(tool.shape)),
+                "a shape is one clear line");
+    }
+    std::size_t pages = 0;
+    std::size_t requests = 0;
+    for (const RefinementStateModel& model : state.models)
+    {
+        check(model);
+        pages += model.pages.size();
+        requests += model.requested.size();
+    }
+    require(pages == part.chunks._length && requests == part.requested._length,
+            "each page and each request belongs to a model");
+    for (const RefinementStateRegion& region : state.regions)
+    {
+        require(region.model < state.models.size(), "a region has a model");
+        require(std::isfinite(region.radius_m) && region.radius_m >= 0.0F, "a radius is an amount");
+        require_finite(region.center_m);
+    }
+}
+
 bool take(const tactus_v5_Telemetry& sample)
 {
     const auto news = dds::watched_from(sample);
@@ -213,76 +267,12 @@ bool take(const tactus_v5_Telemetry& sample)
                 "the name of an object is one clear line");
         require_pose(object.pose, kAnyReach_m);
     }
-    return true;
-}
-
-void check(const RefinementStateModel& model)
-{
-    for (std::size_t i = 0; i < model.pages.size(); ++i)
+    require((news->state != nullptr) == (sample.refinement_state._length == 1),
+            "an accepted sample keeps its state");
+    if (news->state != nullptr)
     {
-        require(model.pages[i].chunk.value <= kMaxRecords / kRecordsPerChunk &&
-                    (i == 0 || model.pages[i - 1].chunk < model.pages[i].chunk),
-                "pages are possible and ascend");
-    }
-    for (std::size_t i = 0; i < model.requested.size(); ++i)
-    {
-        require(model.requested[i].value <= kMaxRecords / kRecordsPerChunk &&
-                    (i == 0 || model.requested[i - 1] < model.requested[i]),
-                "requests are possible and ascend");
-    }
-}
-
-bool take(const tactus_v5_RefinementState& sample)
-{
-    const auto news = dds::front_from(sample);
-    if (!news)
-    {
-        return false;
-    }
-    const RefinementState& front = news->front;
-    for (const FrontTimes& times : front.times)
-    {
-        require(std::isfinite(times.mean_ns) && times.mean_ns >= 0.0 &&
-                    std::isfinite(times.max_ns) && times.max_ns >= 0.0,
-                "times are amounts");
-    }
-    require(front.tools.size() <= kMaxTools && front.models.size() <= kMaxModels &&
-                front.objects.size() <= kMaxStateObjects &&
-                front.regions.size() <= kMaxStateRegions,
-            "counts fit their bounds");
-    require(front.sweep_begin <= front.sweep_end && front.sweep_end <= kMaxObjects,
-            "the listed objects are in their range");
-    for (const RefinementStateTool& tool : front.tools)
-    {
-        require(static_cast<std::size_t>(tool.state) < kSafetyStates &&
-                    static_cast<std::uint32_t>(tool.causes) < 1U << kForceOffs,
-                "a tool has a known state");
-        require(std::isfinite(tool.radius_m) && tool.radius_m >= 0.0, "a radius is an amount");
-        require(tool.shape.size() <= kMaxShapeBytes &&
-                    (tool.shape.empty() || is_one_clear_line(tool.shape)),
-                "a shape is one clear line");
-    }
-    std::size_t pages = 0;
-    std::size_t requests = 0;
-    for (const RefinementStateModel& model : front.models)
-    {
-        check(model);
-        pages += model.pages.size();
-        requests += model.requested.size();
-    }
-    require(pages == sample.chunks._length && requests == sample.requested._length,
-            "each page and each request belongs to a model");
-    for (const RefinementStateObject& object : front.objects)
-    {
-        require(object.model < front.models.size() && object.number < kMaxObjects,
-                "an object has a model and a possible number");
-        require_pose(object.pose, kAnyReach_m);
-    }
-    for (const RefinementStateRegion& region : front.regions)
-    {
-        require(region.model < front.models.size(), "a region has a model");
-        require(std::isfinite(region.radius_m) && region.radius_m >= 0.0F, "a radius is an amount");
-        require_finite(region.center_m);
+        require(news->state->serial == news->serial, "a state has the serial of its sample");
+        check(news->state->state, sample.refinement_state._buffer[0]);
     }
     return true;
 }
@@ -358,8 +348,6 @@ bool take(SampleKind kind, SampleReader& reader)
         return take(reader.read_sample<tactus_v5_Pieces>());
     case SampleKind::telemetry:
         return take(reader.read_sample<tactus_v5_Telemetry>());
-    case SampleKind::refinement_state:
-        return take(reader.read_sample<tactus_v5_RefinementState>());
     case SampleKind::edits:
         return take(reader.read_sample<tactus_v5_Edits>());
     case SampleKind::edit_requests:

@@ -188,7 +188,7 @@ void make_reports(const fs::path& folder)
     auto pair = zeros<tactus_v5_PairTelemetry>();
     auto model = zeros<tactus_v5_ModelTelemetry>();
     auto object = zeros<tactus_v5_ObjectTelemetry>();
-    const auto telemetry = telemetry_of(tool, pair, model, object);
+    auto telemetry = telemetry_of(tool, pair, model, object);
     put_seed(folder / "telemetry", fuzz::sample_script(SampleKind::telemetry, telemetry));
 
     auto shown_tool = zeros<tactus_v5_RefinementStateTool>();
@@ -196,22 +196,19 @@ void make_reports(const fs::path& folder)
     auto shown_model = zeros<tactus_v5_RefinementStateModel>();
     shown_model.pages = 2;
     shown_model.requested = 1;
-    auto shown_object = zeros<tactus_v5_RefinementStateObject>();
-    shown_object.pose = kPlacement;
     auto region = zeros<tactus_v5_RefinementStateRegion>();
     std::uint32_t chunks[] = {1, 4};
     std::uint64_t refined[] = {1, 2};
     std::uint32_t requested[] = {2};
     auto state = zeros<tactus_v5_RefinementState>();
-    name(state.controller_name, "desk");
     state.tools = {1, 1, &shown_tool, false};
     state.models = {1, 1, &shown_model, false};
-    state.objects = {1, 1, &shown_object, false};
     state.chunks = {2, 2, chunks, false};
     state.refined = {2, 2, refined, false};
     state.requested = {1, 1, requested, false};
     state.regions = {1, 1, &region, false};
-    put_seed(folder / "refinement_state", fuzz::sample_script(SampleKind::refinement_state, state));
+    telemetry.refinement_state = {1, 1, &state, false};
+    put_seed(folder / "refinement_state", fuzz::sample_script(SampleKind::telemetry, telemetry));
 }
 
 void make_samples(const fs::path& folder)

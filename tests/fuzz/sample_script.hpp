@@ -14,7 +14,8 @@
 #include "tactus.h"
 
 /// Samples of DDS as bytes: idlc's struct as it is in memory; then each of its sequences, in the
-/// order of the struct, as a length of 2 bytes and the elements.
+/// order of the struct, as a length of 2 bytes and the elements. The sequences of an element follow
+/// its own.
 namespace tactus::fuzz
 {
 
@@ -25,11 +26,10 @@ enum class SampleKind : std::uint8_t
     motion,
     pieces,
     telemetry,
-    refinement_state,
     edits,
     edit_requests,
 };
-inline constexpr std::size_t kSampleKinds = 8;
+inline constexpr std::size_t kSampleKinds = 7;
 
 /// Calls `visit(sequence, bound)` for each sequence of a sample.
 template <typename Visit>
@@ -51,23 +51,28 @@ void visit_sequences(tactus_v5_Pieces& sample, const Visit& visit)
     visit(sample.payload, tactus_v5_max_payload_bytes);
 }
 template <typename Visit>
+void visit_sequences(tactus_v5_RefinementState& part, const Visit& visit)
+{
+    visit(part.tools, tactus_v5_max_tools);
+    visit(part.models, tactus_v5_max_state_models);
+    visit(part.chunks, tactus_v5_max_state_pages);
+    visit(part.refined, tactus_v5_max_state_pages);
+    visit(part.requested, tactus_v5_max_state_requests);
+    visit(part.regions, tactus_v5_max_state_regions);
+}
+template <typename Visit>
 void visit_sequences(tactus_v5_Telemetry& sample, const Visit& visit)
 {
     visit(sample.tools, tactus_v5_max_tools);
     visit(sample.pairs, tactus_v5_max_pairs);
     visit(sample.models, tactus_v5_max_models);
     visit(sample.objects, tactus_v5_max_shown_objects);
-}
-template <typename Visit>
-void visit_sequences(tactus_v5_RefinementState& sample, const Visit& visit)
-{
-    visit(sample.tools, tactus_v5_max_tools);
-    visit(sample.models, tactus_v5_max_state_models);
-    visit(sample.objects, tactus_v5_max_state_objects);
-    visit(sample.chunks, tactus_v5_max_state_pages);
-    visit(sample.refined, tactus_v5_max_state_pages);
-    visit(sample.requested, tactus_v5_max_state_requests);
-    visit(sample.regions, tactus_v5_max_state_regions);
+    // The state's sequences follow it, since it is an element of a sequence.
+    visit(sample.refinement_state, 1);
+    if (sample.refinement_state._length > 0)
+    {
+        visit_sequences(sample.refinement_state._buffer[0], visit);
+    }
 }
 template <typename Visit>
 void visit_sequences(tactus_v5_Edits& sample, const Visit& visit)
@@ -131,10 +136,6 @@ inline void make_true(tactus_v5_RefinementStateRegion& region)
 {
     make_true(region.is_predicted);
 }
-inline void make_true(tactus_v5_RefinementState& state)
-{
-    make_true(state.controller_name);
-}
 
 /// Reads samples from bytes; those past the end are 0. It owns their sequences, each of which has
 /// its exact size, so that reads beyond the end are detected.
@@ -185,26 +186,38 @@ private:
     std::vector<std::unique_ptr<std::byte[]>> owned_; // NOLINT: its size is exact.
 };
 
+/// A sample, or an element of a sequence, without the addresses in it.
+template <typename Sample>
+[[nodiscard]] Sample without_sequences(Sample sample)
+{
+    const auto clear = [](auto& sequence, std::size_t /*bound*/)
+    { std::memset(&sequence, 0, sizeof(sequence)); };
+    if constexpr (requires { visit_sequences(sample, clear); })
+    {
+        visit_sequences(sample, clear);
+    }
+    return sample;
+}
+
 /// Bytes of a sample, as SampleReader reads them. All padding of `sample` must be 0.
 template <typename Sample>
 [[nodiscard]] std::vector<std::byte> sample_script(SampleKind kind, Sample sample)
 {
     std::vector<std::byte> script{static_cast<std::byte>(kind)};
-    const auto put = [&](const void* from, std::size_t size)
+    const auto put = [&](const auto& value)
     {
-        const auto* bytes = static_cast<const std::byte*>(from);
-        script.insert(script.end(), bytes, bytes + size);
+        const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+        script.insert(script.end(), bytes, bytes + sizeof(value));
     };
-    Sample without = sample;
-    visit_sequences(without, [](auto& sequence, std::size_t /*bound*/)
-                    { std::memset(&sequence, 0, sizeof(sequence)); });
-    put(&without, sizeof(without));
+    put(without_sequences(sample));
     visit_sequences(sample,
                     [&](auto& sequence, std::size_t /*bound*/)
                     {
-                        const auto length = static_cast<std::uint16_t>(sequence._length);
-                        put(&length, sizeof(length));
-                        put(sequence._buffer, length * sizeof(*sequence._buffer));
+                        put(static_cast<std::uint16_t>(sequence._length));
+                        for (std::uint32_t i = 0; i < sequence._length; ++i)
+                        {
+                            put(without_sequences(sequence._buffer[i]));
+                        }
                     });
     return script;
 }

@@ -83,7 +83,6 @@ CYCLONEDDS_URI='<CycloneDDS/>' expect 2 'names a network' "$publish" bumpy.spm \
 # What each role may read. The readers' own plugin checks nothing: the writers' does.
 readonly samples='matched [0-9]+ samples [1-9]'
 intrude_until "^telemetry $samples" "$desk" - read '*'
-intrude_until "^refinement_state $samples" "$desk" - read '*'
 intrude_until "^telemetry $samples" "$desk" "$lax" read '*'
 for topic in catalogue objects motion wanted chunks; do
     ! sees "$topic" || fault "a viewer sees $topic: $(cat intruder.log)"

@@ -40,13 +40,12 @@ struct Spied
     std::size_t samples{0};
 };
 
-std::array<Spied, 7> topics{{{"catalogue", &tactus_v5_CatalogueEntry_desc},
+std::array<Spied, 6> topics{{{"catalogue", &tactus_v5_CatalogueEntry_desc},
                              {"objects", &tactus_v5_ObjectRecord_desc},
                              {"motion", &tactus_v5_Motion_desc},
                              {"wanted", &tactus_v5_Wanted_desc},
                              {"chunks", &tactus_v5_Pieces_desc},
-                             {"telemetry", &tactus_v5_Telemetry_desc},
-                             {"refinement_state", &tactus_v5_RefinementState_desc}}};
+                             {"telemetry", &tactus_v5_Telemetry_desc}}};
 
 dds_entity_t join(std::uint32_t domain, const std::string& keys, const std::string& library)
 {

@@ -3,7 +3,6 @@
 #include "transport/dds/edit_publisher.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "transport/dds/newest.hpp"
 #include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/edit_coding.hpp"

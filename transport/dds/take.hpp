@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "transport/dds/participants.hpp"
+
 #include <dds/dds.h>
 
 #include <array>
@@ -18,6 +20,15 @@ template <std::size_t Size>
 [[nodiscard]] std::string_view text_of(const char (&text)[Size]) noexcept // NOLINT: idlc's type.
 {
     return {static_cast<const char*>(text), ::strnlen(static_cast<const char*>(text), Size)};
+}
+
+/// Identity of the controller that a sample states: the GUID of its participant.
+template <typename Sample>
+[[nodiscard]] ControllerId controller_of(const Sample& sample) noexcept
+{
+    ControllerId id{};
+    std::memcpy(id.data(), sample.controller, id.size());
+    return id;
 }
 
 /// True if a sample reports only the end of its instance; a genuine writer of the sample ended it.

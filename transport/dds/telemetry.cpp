@@ -3,8 +3,8 @@
 #include "transport/dds/telemetry.hpp"
 
 #include "transport/base/printable.hpp"
-#include "transport/dds/newest.hpp"
 #include "transport/dds/placement.hpp"
+#include "transport/dds/refinement_state.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/model_name.hpp"
 
@@ -296,6 +296,15 @@ std::optional<WatchedController> watched_from(const tactus_v5_Telemetry& sample)
         }
         news.objects.objects.push_back(*std::move(object));
     }
+    if (sample.refinement_state._length > 0)
+    {
+        auto state = state_from(sample.refinement_state._buffer[0]);
+        if (!state)
+        {
+            return std::nullopt;
+        }
+        news.state = std::make_shared<const SeenState>(SeenState{sample.serial, *std::move(state)});
+    }
     return news;
 }
 
@@ -324,7 +333,8 @@ TelemetryWriter::TelemetryWriter(const ControllerId& controller, std::string con
     TACTUS_ASSERT(models_.size() <= kMaxShownModels);
 }
 
-void TelemetryWriter::write(const Telemetry& telemetry, const ObjectsTelemetry& objects)
+void TelemetryWriter::write(const Telemetry& telemetry, const ObjectsTelemetry& objects,
+                            const RefinementState* state)
 {
     TACTUS_ASSERT(telemetry.tool_count <= kMaxTools);
     TACTUS_ASSERT(telemetry.pair_count <= kMaxPairs);
@@ -363,12 +373,25 @@ void TelemetryWriter::write(const Telemetry& telemetry, const ObjectsTelemetry& 
     const auto count = static_cast<std::uint32_t>(shown.size());
     sample.objects = {count, count, shown.data(), false};
     // A failed write counts as a lost sample; the next one replaces it.
-    dds_write(writer_.handle, &sample);
+    if (state == nullptr)
+    {
+        dds_write(writer_.handle, &sample);
+        return;
+    }
+    ++states_sent_;
+    with_wire_state(*state,
+                    [&](tactus_v5_RefinementState& part)
+                    {
+                        sample.refinement_state = {1, 1, &part, false};
+                        dds_write(writer_.handle, &sample);
+                    });
 }
 
-Result<std::unique_ptr<TelemetryReader>, Refusal> TelemetryReader::create(const Domain& domain)
+Result<std::unique_ptr<TelemetryReader>, Refusal> TelemetryReader::create(const Domain& domain,
+                                                                          bool wants_states)
 {
-    auto reader = make_reader(domain, Topic::telemetry, kAnyPartition);
+    auto reader =
+        make_reader(domain, wants_states ? Topic::states : Topic::telemetry, kAnyPartition);
     if (!reader)
     {
         return reader.error();
@@ -384,8 +407,59 @@ TelemetryReader::TelemetryReader(Participants& participants, Endpoint reader)
 
 void TelemetryReader::poll()
 {
-    refused_ += take_newest<tactus_v5_Telemetry>(reader_, participants_, kMaxWatched, controllers_,
-                                                 watched_from);
+    take_each<tactus_v5_Telemetry>(
+        reader_.handle, kMaxWatched * kStateDepth,
+        [this](const tactus_v5_Telemetry& sample, const dds_sample_info_t& info)
+        {
+            if (tells_end(info))
+            {
+                end(controller_of(sample), info.publication_handle);
+            }
+            else if (!try_take(sample, info))
+            {
+                ++refused_;
+                participants_.refuse(info.publication_handle, Refused::telemetry);
+            }
+        });
+    std::erase_if(controllers_, [&](const WatchedController& each)
+                  { return each.is_disputed && !participants_.is_writing(each.writer); });
+}
+
+bool TelemetryReader::try_take(const tactus_v5_Telemetry& sample, const dds_sample_info_t& info)
+{
+    std::optional<WatchedController> news = watched_from(sample);
+    const auto known =
+        std::ranges::find(controllers_, controller_of(sample), &WatchedController::id);
+    if (!news || (known == controllers_.end() && controllers_.size() == kMaxWatched))
+    {
+        return false;
+    }
+    news->writer = info.publication_handle;
+    news->is_disputed = info.instance_state != DDS_ALIVE_INSTANCE_STATE;
+    if (known == controllers_.end())
+    {
+        controllers_.push_back(*std::move(news));
+        return true;
+    }
+    if (news->state == nullptr)
+    {
+        news->state = std::move(known->state);
+    }
+    *known = *std::move(news);
+    return true;
+}
+
+/// Removes a controller if its own participant ended it; others cannot.
+void TelemetryReader::end(const ControllerId& controller, std::uint64_t writer)
+{
+    const auto who = participants_.writer_of(writer);
+    if (who && *who != controller)
+    {
+        participants_.refuse(writer, Refused::identity);
+        return;
+    }
+    std::erase_if(controllers_,
+                  [&](const WatchedController& each) { return each.id == controller; });
 }
 
 } // namespace tactus::dds

@@ -5,15 +5,18 @@
 #include "rt_core/limits.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/edit_coding.hpp"
-#include "transport/front.hpp"
+#include "transport/refinement_state.hpp"
 #include "transport/telemetry.hpp"
 
 #include <dds/dds.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
+#include <string_view>
+#include <vector>
 
 #include "tactus.h"
 
@@ -25,6 +28,8 @@ namespace
 
 /// Longest wait of a write for room in the writer.
 constexpr std::int64_t kBlockingMax = DDS_MSECS(5);
+/// User data of readers of refinement states, by which writers know them.
+constexpr std::string_view kReadsStates = "refinement_state";
 /// Silence after which a writer counts as gone (DDS liveliness), for topics with has_liveliness.
 constexpr std::int64_t kLiveliness = DDS_MSECS(500);
 
@@ -42,7 +47,6 @@ static_assert(tactus_v5_max_hull_vertices == kMaxHullVertices);
 static_assert(tactus_v5_max_payload_bytes >= kMaxCodedEditBytes);
 static_assert(tactus_v5_max_shape_bytes == kMaxShapeBytes);
 static_assert(tactus_v5_max_state_models == kMaxModels);
-static_assert(tactus_v5_max_state_objects == kMaxStateObjects);
 static_assert(tactus_v5_max_state_pages == kMaxStatePages);
 static_assert(tactus_v5_max_state_requests == kMaxStateRequests);
 static_assert(tactus_v5_max_state_regions == kMaxStateRegions);
@@ -136,12 +140,6 @@ bool is_honest_telemetry(const void* sample, const dds_sample_info_t* info, void
     return is_of_its_controller(*static_cast<const tactus_v5_Telemetry*>(sample), info, context);
 }
 
-bool is_honest_refinement_state(const void* sample, const dds_sample_info_t* info, void* context)
-{
-    return is_of_its_controller(*static_cast<const tactus_v5_RefinementState*>(sample), info,
-                                context);
-}
-
 bool is_honest_edit(const void* sample, const dds_sample_info_t* info, void* context)
 {
     const auto& edit = *static_cast<const tactus_v5_Edits*>(sample);
@@ -174,8 +172,8 @@ const TopicTraits& traits_of(Topic topic)
          4 * kCreditPieces},
         {"tactus/v5/telemetry", &tactus_v5_Telemetry_desc, is_honest_telemetry, false, true, true,
          1},
-        {"tactus/v5/refinement_state", &tactus_v5_RefinementState_desc, is_honest_refinement_state,
-         false, true, true, 1},
+        {"tactus/v5/telemetry", &tactus_v5_Telemetry_desc, is_honest_telemetry, false, true, true,
+         kStateDepth},
         {"tactus/v5/edits", &tactus_v5_Edits_desc, is_honest_edit, true, false, false, 1},
         {"tactus/v5/edit_requests", &tactus_v5_EditRequests_desc, is_honest_edit_request, false,
          false, false, 64},
@@ -271,6 +269,10 @@ Result<Endpoint, Refusal> make_reader(const Domain& domain, Topic topic,
     }
     const Qos parent_qos = partition_qos(partition);
     const Qos qos = endpoint_qos(traits);
+    if (topic == Topic::states)
+    {
+        dds_qset_userdata(qos.get(), kReadsStates.data(), kReadsStates.size());
+    }
     Endpoint reader;
     reader.parent = Entity(dds_create_subscriber(domain.participant(), parent_qos.get(), nullptr));
     reader.handle = dds_create_reader(reader.parent.get(), type.get(), qos.get(), nullptr);
@@ -325,6 +327,30 @@ std::uint32_t readers_of(const Endpoint& writer)
 bool is_matched(const Endpoint& writer)
 {
     return readers_of(writer) > 0;
+}
+
+bool has_reader_of_states(const Endpoint& writer)
+{
+    std::vector<dds_instance_handle_t> readers(readers_of(writer));
+    const std::int32_t count =
+        dds_get_matched_subscriptions(writer.handle, readers.data(), readers.size());
+    readers.resize(std::min(readers.size(), static_cast<std::size_t>(std::max(count, 0))));
+    return std::ranges::any_of(
+        readers,
+        [&](dds_instance_handle_t reader)
+        {
+            const std::unique_ptr<dds_builtintopic_endpoint_t,
+                                  decltype(&dds_builtintopic_free_endpoint)>
+                endpoint(dds_get_matched_subscription_data(writer.handle, reader),
+                         &dds_builtintopic_free_endpoint);
+            void* data = nullptr;
+            std::size_t size = 0;
+            const bool has_data =
+                endpoint != nullptr && dds_qget_userdata(endpoint->qos, &data, &size);
+            const std::unique_ptr<void, decltype(&dds_free)> owned(data, &dds_free);
+            return has_data && size == kReadsStates.size() &&
+                   std::memcmp(data, kReadsStates.data(), size) == 0;
+        });
 }
 
 bool has_publisher(const Endpoint& reader)

@@ -39,6 +39,9 @@ inline constexpr std::size_t kMaxBaseBytes = std::size_t{1} << 20U;
 inline constexpr std::uint32_t kKeptEdits = 1'024;
 /// Maximum number of parts of the sum of a model's edits: four million removed faces.
 inline constexpr std::uint32_t kMaxSumParts = 4'096;
+/// Number of samples of a controller that a reader of refinement states keeps; not all samples have
+/// a state.
+inline constexpr std::int32_t kStateDepth = 16;
 
 enum class Topic : std::uint8_t
 {
@@ -48,7 +51,7 @@ enum class Topic : std::uint8_t
     wanted,
     chunks,
     telemetry,
-    front,
+    states, ///< The same topic for readers that want the refinement states.
     edits,
     edit_requests,
 };
@@ -80,6 +83,8 @@ inline constexpr const char* kAnyPartition = "*";
 [[nodiscard]] std::uint32_t readers_of(const Endpoint& writer);
 /// True if a writer has a reader; has_publisher(): true if a reader has a writer.
 [[nodiscard]] bool is_matched(const Endpoint& writer);
+/// True if a writer of telemetry has a reader of Topic::states. May allocate.
+[[nodiscard]] bool has_reader_of_states(const Endpoint& writer);
 [[nodiscard]] bool has_publisher(const Endpoint& reader);
 
 } // namespace tactus::dds

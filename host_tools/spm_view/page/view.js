@@ -126,7 +126,8 @@ function show_choices(state) {
   const name_of = (object) => {
     const model = controller.models.find((m) => m.hash === object.model);
     const shows = model ? model.name : object.model.slice(0, 8);
-    return `${object.object}: ${object.name ? `${object.name} (${shows})` : shows}`;
+    return `${object.object}: ${object.name && object.name !== shows ?
+      `${object.name} (${shows})` : shows}`;
   };
   offer(by_id("object"),
     [["", "all"], ...objects.map((o) => [`${o.server}/${o.object}`, name_of(o)])], choice.object);

@@ -149,22 +149,21 @@ std::set<std::string> rights_of(keys::Role role, const std::string& name)
 /// What Cyclone makes of the documents is shown by hostile.dds_security.
 TEST(Rights, are_the_least_of_each_role)
 {
-    const std::set<std::string> watching{"subscribe/telemetry *", "subscribe/refinement_state *"};
+    const std::set<std::string> watching{"subscribe/telemetry *"};
     EXPECT_EQ(rights_of(keys::Role::viewer, "desk"), watching);
     EXPECT_EQ(rights_of(keys::Role::controller, "hand-1"),
               (std::set<std::string>{"publish/wanted hand-1", "publish/telemetry hand-1",
-                                     "publish/refinement_state hand-1", "subscribe/catalogue ",
-                                     "subscribe/chunks hand-1.*", "subscribe/objects server.*",
-                                     "subscribe/motion server.*", "subscribe/edits server.*"}));
-    EXPECT_EQ(rights_of(keys::Role::server, "station"),
-              (std::set<std::string>{
-                  "publish/catalogue ", "publish/chunks *", "publish/objects server.*",
-                  "publish/motion server.*", "publish/edits server.*", "subscribe/catalogue ",
-                  "subscribe/wanted *", "subscribe/telemetry *", "subscribe/refinement_state *",
-                  "subscribe/edit_requests server.*"}));
+                                     "subscribe/catalogue ", "subscribe/chunks hand-1.*",
+                                     "subscribe/objects server.*", "subscribe/motion server.*",
+                                     "subscribe/edits server.*"}));
+    EXPECT_EQ(
+        rights_of(keys::Role::server, "station"),
+        (std::set<std::string>{"publish/catalogue ", "publish/chunks *", "publish/objects server.*",
+                               "publish/motion server.*", "publish/edits server.*",
+                               "subscribe/catalogue ", "subscribe/wanted *",
+                               "subscribe/telemetry *", "subscribe/edit_requests server.*"}));
     EXPECT_EQ(rights_of(keys::Role::editor, "desk-2"),
               (std::set<std::string>{"publish/wanted desk-2", "publish/telemetry desk-2",
-                                     "publish/refinement_state desk-2",
                                      "publish/edit_requests server.*", "subscribe/catalogue ",
                                      "subscribe/chunks desk-2.*", "subscribe/objects server.*",
                                      "subscribe/motion server.*", "subscribe/edits server.*"}));

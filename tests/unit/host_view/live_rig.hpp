@@ -6,6 +6,7 @@
 #include "rt_core/math/infinity.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 /// Controllers as DDS reports them.
@@ -24,13 +25,21 @@ inline dds::WatchedController told(std::uint8_t id, const std::string& name)
     return controller;
 }
 
-inline dds::SeenFront front(std::uint8_t id, std::uint64_t serial)
+inline RefinementState state()
 {
-    dds::SeenFront seen;
-    seen.id.fill(id);
-    seen.serial = serial;
-    seen.front.tools.push_back({SafetyState::force, ForceOff::none, "sphere:0.002", 0.002});
-    return seen;
+    RefinementState state;
+    state.tools.push_back({SafetyState::force, ForceOff::none, "sphere:0.002", 0.002});
+    return state;
+}
+
+/// A controller whose last sample, of this serial, had the state.
+inline dds::WatchedController told(std::uint8_t id, const std::string& name, std::uint64_t serial,
+                                   const RefinementState& state)
+{
+    dds::WatchedController controller = told(id, name);
+    controller.serial = serial;
+    controller.state = std::make_shared<const dds::SeenState>(dds::SeenState{serial, state});
+    return controller;
 }
 
 } // namespace tactus::view::test

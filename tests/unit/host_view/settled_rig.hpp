@@ -5,7 +5,7 @@
 #include "host_tools/spm_view/model_shelf.hpp"
 #include "tests/shared/frame_rig.hpp"
 #include "tests/shared/test_model.hpp"
-#include "transport/front.hpp"
+#include "transport/refinement_state.hpp"
 
 #include <algorithm>
 #include <memory>

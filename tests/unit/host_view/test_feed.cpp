@@ -53,11 +53,11 @@ LiveController controller_with(std::size_t objects)
     telemetry.tools[0].in_contact = telemetry.tools[0].data_limited = true;
     telemetry.tools[1].has_gripper = telemetry.tools[1].halted = true;
     telemetry.tools[1].buttons = 5;
-    dds::SeenFront front = test::front(7, 3);
-    live.front = std::make_shared<const dds::SeenFront>(front); // It has the first tool only.
+    // The state has the first tool only.
+    live.told.state = std::make_shared<const dds::SeenState>(dds::SeenState{3, test::state()});
     for (std::uint32_t i = 0; i < objects; ++i)
     {
-        ObjectTelemetry& object = live.shown.emplace_back();
+        ObjectTelemetry& object = live.objects.emplace_back();
         object.number = i;
         object.object = 1'000 + i;
         object.server_epoch = 0xFEDC'BA98'7654'3210U;
@@ -165,8 +165,8 @@ TEST(Feed, divides_many_objects_among_datagrams_that_all_have_the_tools)
             EXPECT_EQ(read->objects[i].number, next++);
         }
     }
-    EXPECT_EQ(next, live.shown.size());
-    EXPECT_EQ(nlohmann::json::parse(feed_json(live))["objects"].size(), live.shown.size());
+    EXPECT_EQ(next, live.objects.size());
+    EXPECT_EQ(nlohmann::json::parse(feed_json(live))["objects"].size(), live.objects.size());
     EXPECT_EQ(feed_datagrams(controller_with(0)).size(), 1U);
 }
 

@@ -60,7 +60,7 @@ std::vector<Had> record(const std::filesystem::path& path, std::uint32_t frames,
         }
         now.pages = test::pages_of(rig.model());
         std::ranges::transform(rig.frame().regions(), std::back_inserter(now.regions),
-                               front_region_of);
+                               shown_region_of);
         now.active_faces = rig.model().forest.active_faces();
     }
     const std::vector<std::byte> bytes = rig.finish_recording();
@@ -102,9 +102,9 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
         {
             EXPECT_EQ(telemetry.pairs[i].lower_m, had[frame].lower_m[i]);
         }
-        EXPECT_EQ(shown.front->front.regions, had[frame].regions);
-        ASSERT_EQ(shown.front->front.models.size(), 1U);
-        const RefinementStateModel& model = shown.front->front.models[0];
+        EXPECT_EQ(shown.state()->regions, had[frame].regions);
+        ASSERT_EQ(shown.state()->models.size(), 1U);
+        const RefinementStateModel& model = shown.state()->models[0];
         EXPECT_TRUE(model.pages == had[frame].pages);
         const auto known = shelf.find(model.hash);
         ASSERT_NE(known, nullptr);
@@ -121,7 +121,7 @@ TEST(Film, has_of_each_frame_what_the_frame_had_and_its_faces_without_a_model_fi
     EXPECT_GT(cuts, 2U);
     EXPECT_FALSE(had[80].regions.empty());
     EXPECT_EQ(sut->at(9'999).told.telemetry.frame, kFrames);
-    EXPECT_EQ(sut->front(kFrames), nullptr);
+    EXPECT_EQ(sut->state(kFrames), nullptr);
 }
 
 TEST(Films, tell_where_two_recordings_first_differ_and_how)
@@ -154,8 +154,8 @@ TEST(Films, tell_where_two_recordings_first_differ_and_how)
     EXPECT_EQ(sut.frames(), kFrames);
     ASSERT_EQ(sut.at(155).controllers.size(), 2U);
     EXPECT_EQ(sut.at(155).controllers[1].told.telemetry.frame, 150U); // The last frame stays.
-    EXPECT_NE(sut.front(id_text(sut.films()[1]->id()), 149), nullptr);
-    EXPECT_EQ(sut.front("another", 0), nullptr);
+    EXPECT_NE(sut.state(id_text(sut.films()[1]->id()), 149), nullptr);
+    EXPECT_EQ(sut.state("another", 0), nullptr);
 }
 
 TEST(Film, shows_a_recording_that_was_cut_as_far_as_it_goes_and_ends_when_it_is_told_to)

@@ -16,93 +16,59 @@ namespace tactus::view
 namespace
 {
 
-using test::front;
+using test::state;
 using test::told;
 
-TEST(LiveState, keeps_the_fronts_of_a_minute_and_no_more)
+TEST(LiveState, keeps_the_states_of_a_minute_and_no_more)
 {
     LiveState sut;
-    const std::string id = id_text(front(1, 0).id);
-    for (std::uint64_t serial = 1; serial <= LiveState::kFronts + 1; ++serial)
+    const std::string id = id_text(told(1, "one").id);
+    for (std::uint64_t serial = 1; serial <= LiveState::kStates + 1; ++serial)
     {
-        sut.publish({told(1, "one")}, {front(1, serial)});
+        sut.publish({told(1, "one", serial, state())});
         const std::uint64_t news = sut.newest()->serial;
-        sut.publish({told(1, "one")}, {front(1, serial)}); // No change.
+        sut.publish({told(1, "one", serial, state())}); // No change.
         EXPECT_EQ(sut.newest()->serial, news);
     }
-    EXPECT_EQ(sut.front(id, 1), nullptr);
-    ASSERT_NE(sut.front(id, 2), nullptr);
-    EXPECT_EQ(sut.front(id, LiveState::kFronts + 1)->serial, LiveState::kFronts + 1);
-    EXPECT_EQ(sut.front("another", 2), nullptr);
+    EXPECT_EQ(sut.state(id, 1), nullptr);
+    ASSERT_NE(sut.state(id, 2), nullptr);
+    EXPECT_EQ(sut.state(id, LiveState::kStates + 1)->serial, LiveState::kStates + 1);
+    EXPECT_EQ(sut.state("another", 2), nullptr);
     const std::uint64_t before = sut.newest()->serial;
-    sut.publish({}, {});
-    EXPECT_EQ(sut.front(id, 2), nullptr);
+    sut.publish({});
+    EXPECT_EQ(sut.state(id, 2), nullptr);
     EXPECT_GT(sut.newest()->serial, before) << "it has gone";
 }
 
 TEST(LiveState, keeps_no_more_bytes_than_it_may)
 {
     LiveState sut;
-    dds::SeenFront large = front(1, 0);
-    large.front.models.emplace_back().pages.resize(kMaxStatePages);
+    RefinementState large = state();
+    large.models.emplace_back().pages.resize(kMaxStatePages);
     const std::size_t least = kMaxStatePages * sizeof(RefinementStatePage);
     std::size_t kept = 0;
-    std::vector<dds::SeenFront> all;
-    for (std::uint8_t id = 1; id <= 4; ++id)
+    std::vector<dds::WatchedController> all;
+    for (std::uint64_t serial = 1; serial <= LiveState::kStates; ++serial)
     {
-        large.id.fill(id);
-        all.push_back(large);
-    }
-    for (std::uint64_t serial = 1; serial <= LiveState::kFronts; ++serial)
-    {
-        for (dds::SeenFront& each : all)
+        all.clear();
+        for (std::uint8_t id = 1; id <= 4; ++id)
         {
-            each.serial = serial;
+            all.push_back(told(id, "one", serial, large));
         }
-        sut.publish({}, all);
+        sut.publish(all);
     }
-    for (const dds::SeenFront& each : all)
+    for (const dds::WatchedController& each : all)
     {
-        for (std::uint64_t serial = 1; serial <= LiveState::kFronts; ++serial)
+        for (std::uint64_t serial = 1; serial <= LiveState::kStates; ++serial)
         {
-            kept += sut.front(id_text(each.id), serial) != nullptr ? 1U : 0U;
+            kept += sut.state(id_text(each.id), serial) != nullptr ? 1U : 0U;
         }
     }
     EXPECT_GT(kept, 4U);
-    EXPECT_LE(kept * least, LiveState::kFrontBytes);
+    EXPECT_LE(kept * least, LiveState::kStateBytes);
 }
 
 TEST(LiveState, gathers_objects_turn_by_turn_and_forgets_those_that_went)
-{
-    LiveState sut;
-    dds::SeenFront seen = front(1, 1);
-    const auto publish = [&](std::uint32_t begin, std::vector<std::uint32_t> numbers)
-    {
-        ++seen.serial;
-        seen.front.sweep_begin = begin;
-        seen.front.sweep_end = begin + 2;
-        seen.front.models = {RefinementStateModel{}};
-        seen.front.objects.clear();
-        for (const std::uint32_t number : numbers)
-        {
-            RefinementStateObject& object = seen.front.objects.emplace_back();
-            object.object = object.number = number;
-        }
-        sut.publish({told(1, "one")}, {seen});
-        std::vector<std::uint32_t> there;
-        for (const SeenObject& each : sut.newest()->controllers[0].objects)
-        {
-            there.push_back(each.object.number);
-        }
-        return there;
-    };
-    EXPECT_EQ(publish(0, {0, 1}), (std::vector<std::uint32_t>{0, 1}));
-    EXPECT_EQ(publish(2, {3, 1}), (std::vector<std::uint32_t>{0, 1, 3}));
-    EXPECT_EQ(publish(0, {1}), (std::vector<std::uint32_t>{1, 3}));
-    EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{1}));
-}
-
-TEST(LiveState, gathers_the_objects_of_telemetry_in_the_same_way)
 {
     LiveState sut;
     dds::WatchedController one = told(1, "one");
@@ -114,9 +80,9 @@ TEST(LiveState, gathers_the_objects_of_telemetry_in_the_same_way)
         {
             one.objects.objects.emplace_back().number = number;
         }
-        sut.publish({one}, {});
+        sut.publish({one});
         std::vector<std::uint32_t> there;
-        for (const ObjectTelemetry& each : sut.newest()->controllers[0].shown)
+        for (const ObjectTelemetry& each : sut.newest()->controllers[0].objects)
         {
             there.push_back(each.number);
         }
@@ -125,7 +91,8 @@ TEST(LiveState, gathers_the_objects_of_telemetry_in_the_same_way)
     EXPECT_EQ(publish(0, {0, 1}), (std::vector<std::uint32_t>{0, 1}));
     EXPECT_EQ(publish(2, {3, 1}), (std::vector<std::uint32_t>{0, 1, 3}));
     EXPECT_EQ(publish(0, {1}), (std::vector<std::uint32_t>{1, 3}));
-    sut.publish({}, {});
+    EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{1}));
+    sut.publish({});
     EXPECT_EQ(publish(2, {}), (std::vector<std::uint32_t>{})) << "it came again";
 }
 
@@ -140,36 +107,54 @@ TEST(StateJson, says_what_it_waits_for)
     };
     EXPECT_EQ(waits(), "a controller on DDS domain 7: start 'hrtc --model NAME --domain 7' or "
                        "'hrtc FILE --domain 7' (with FILE, viewers need --domain)");
-    live.publish({told(1, "one")}, {});
+    live.publish({told(1, "one")});
     EXPECT_NE(waits().find("--no-refinement-state"), std::string::npos);
     EXPECT_NE(waits("01").find("disconnected"), std::string::npos);
-    dds::SeenFront seen = front(1, 1);
-    live.publish({told(1, "one")}, {seen});
+    dds::WatchedController one = told(1, "one", 1, state());
+    live.publish({one});
     EXPECT_EQ(waits(), "");
-    ++seen.serial;
-    seen.front.models.emplace_back().hash.fill(0xAB);
-    live.publish({told(1, "one")}, {seen});
+    RefinementState refined = state();
+    refined.models.emplace_back().hash.fill(0xAB);
+    live.publish({told(1, "one", 2, refined)});
     EXPECT_NE(waits().find("abababab"), std::string::npos);
+    one.serial = 3;
+    one.objects.objects.emplace_back().model.fill(0xCD);
+    live.publish({one});
+    EXPECT_NE(waits().find("cdcdcdcd"), std::string::npos) << "a model without pages";
 }
 
 TEST(StateJson, shows_the_chosen_controller_and_lists_all)
 {
     const auto shelf = std::move(ModelShelf::open({})).value();
     LiveState live;
-    dds::SeenFront shown = front(2, 5);
-    RefinementStateModel& model = shown.front.models.emplace_back();
+    RefinementState shown = state();
+    RefinementStateModel& model = shown.models.emplace_back();
     model.hash.fill(0xAB);
     model.requested = {{3}, {7}};
-    shown.front.regions = {{0, true, {0.5F, 1.0F, 2.0F}, 0.25F}};
-    shown.front.regions_left_out = 6;
-    shown.front.slots_left_out = 7;
-    live.publish({told(1, "one"), told(2, "two")}, {shown});
+    shown.regions = {{0, true, {0.5F, 1.0F, 2.0F}, 0.25F}};
+    shown.regions_left_out = 6;
+    shown.slots_left_out = 7;
+    dds::WatchedController two = told(2, "two", 5, shown);
+    ObjectTelemetry& object = two.objects.objects.emplace_back();
+    object.number = object.object = 0;
+    object.name = "cup";
+    object.model.fill(0xCD);
+    object.pose.translation_m = {1.0, 2.0, 3.0};
+    two.objects.sweep_end = 1;
+    live.publish({told(1, "one"), two});
     const auto state =
-        nlohmann::json::parse(state_json(*live.newest(), *shelf, id_text(front(2, 0).id), 0));
+        nlohmann::json::parse(state_json(*live.newest(), *shelf, id_text(two.id), 0));
     EXPECT_EQ(state["controllers"].size(), 2U);
     EXPECT_EQ(state["controller"]["name"], "two");
     EXPECT_EQ(state["controller"]["front"]["serial"], 5);
-    EXPECT_EQ(state["controller"]["front"]["models"].back()["requested"], 2);
+    ASSERT_EQ(state["controller"]["front"]["models"].size(), 2U);
+    EXPECT_EQ(state["controller"]["front"]["models"][0]["requested"], 2);
+    EXPECT_EQ(state["controller"]["front"]["models"][1]["hash"],
+              std::string("cdcdcdcd") + "cdcdcdcdcdcdcdcdcdcdcdcd");
+    ASSERT_EQ(state["controller"]["front"]["objects"].size(), 1U);
+    EXPECT_EQ(state["controller"]["front"]["objects"][0]["name"], "cup");
+    EXPECT_EQ(state["controller"]["front"]["objects"][0]["translation_m"],
+              (std::vector<double>{1.0, 2.0, 3.0}));
     EXPECT_EQ(state["controller"]["front"]["regions_left_out"], 6);
     EXPECT_EQ(state["controller"]["front"]["slots_left_out"], 7);
     EXPECT_EQ(state["controller"]["front"]["regions"],
@@ -212,7 +197,7 @@ TEST(ForceWords, name_every_cause_and_what_brings_the_force_back)
 TEST(Metrics, are_text_that_prometheus_reads)
 {
     LiveState live;
-    live.publish({told(1, "one"), told(2, "two")}, {});
+    live.publish({told(1, "one"), told(2, "two")});
     const std::string text = metrics_text(*live.newest());
     EXPECT_NE(text.find("tactus_controllers 2\n"), std::string::npos);
     EXPECT_NE(text.find("# TYPE tactus_force_newtons gauge\n"

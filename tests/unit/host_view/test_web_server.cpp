@@ -198,7 +198,7 @@ TEST_F(WebServerTest, lets_four_viewers_watch_and_goes_on_answering)
         {
             while (!is_over.load())
             {
-                live_.publish({test::told(1, "one")}, {});
+                live_.publish({test::told(1, "one")});
                 std::this_thread::sleep_for(std::chrono::milliseconds(5));
             }
         });
@@ -234,7 +234,7 @@ TEST_F(WebServerTest, feeds_the_chosen_controller_and_lets_a_slow_reader_skip)
     for (std::uint64_t serial = 1; serial <= 20'000; ++serial)
     {
         one.serial = other.serial = serial;
-        live_.publish({one, other}, {});
+        live_.publish({one, other});
     }
     const std::string read = two->read("\"serial\":20000,");
     EXPECT_NE(read.find("\"name\":\"two\""), std::string::npos);
@@ -267,10 +267,10 @@ TEST_F(WebServerTest, serves_pages_of_the_user_from_one_folder_only)
 TEST_F(WebServerTest, sends_the_faces_of_a_front)
 {
     const ContentHash hash = shelf_->labels().front().hash;
-    dds::SeenFront seen = test::front(1, 9);
-    seen.front.models.push_back({hash, {}, {}});
-    live_.publish({test::told(1, "one")}, {seen});
-    const std::string controller = id_text(seen.id);
+    RefinementState seen = test::state();
+    seen.models.push_back({hash, {}, {}});
+    live_.publish({test::told(1, "one", 9, seen)});
+    const std::string controller = id_text(test::told(1, "one").id);
     const auto status =
         [&](const std::string& id, const std::string& serial, const std::string& model)
     {
@@ -283,9 +283,8 @@ TEST_F(WebServerTest, sends_the_faces_of_a_front)
     EXPECT_EQ(status(controller, "9", std::string(32, '0')), 404);
     EXPECT_EQ(status(controller, "-9", hash_text(hash)), 400);
     EXPECT_EQ(status(controller, "9x", hash_text(hash)), 400);
-    ++seen.serial;
-    seen.front.models[0].pages = {{{0xFFFFU}, 1}}; // Chunk that the model does not have.
-    live_.publish({test::told(1, "one")}, {seen});
+    seen.models[0].pages = {{{0xFFFFU}, 1}}; // Chunk that the model does not have.
+    live_.publish({test::told(1, "one", 10, seen)});
     EXPECT_EQ(status(controller, "10", hash_text(hash)), 409);
 }
 
@@ -293,19 +292,21 @@ TEST_F(WebServerTest, sends_what_can_be_split_of_a_front_that_leaves_pages_out)
 {
     const ContentHash hash = shelf_->labels().front().hash;
     const ChunkId last{shelf_->find(hash)->header().counts().chunks() - 1};
-    dds::SeenFront seen = test::front(1, 9);
-    seen.front.models.push_back({hash, {{last, 1}}, {}}); // The chunk's records depend on others.
+    RefinementState seen = test::state();
+    seen.models.push_back({hash, {{last, 1}}, {}}); // The chunk's records depend on others.
+    std::uint64_t serial = 9;
     const auto status = [&](const char* path)
     {
-        return status_of(get(fmt::format("{}?controller={}&serial={}&model={}", path,
-                                         id_text(seen.id), seen.serial, hash_text(hash))));
+        return status_of(
+            get(fmt::format("{}?controller={}&serial={}&model={}", path,
+                            id_text(test::told(1, "one").id), serial, hash_text(hash))));
     };
-    live_.publish({test::told(1, "one")}, {seen});
+    live_.publish({test::told(1, "one", serial, seen)});
     EXPECT_EQ(status("/front"), 409);
     EXPECT_EQ(status("/boxes"), 409);
-    ++seen.serial;
-    seen.front.slots_left_out = 1;
-    live_.publish({test::told(1, "one")}, {seen});
+    ++serial;
+    seen.slots_left_out = 1;
+    live_.publish({test::told(1, "one", serial, seen)});
     EXPECT_EQ(status("/front"), 200);
     EXPECT_EQ(status("/boxes"), 200);
 }
@@ -313,22 +314,23 @@ TEST_F(WebServerTest, sends_what_can_be_split_of_a_front_that_leaves_pages_out)
 TEST_F(WebServerTest, sends_the_boxes_of_what_is_requested)
 {
     const ContentHash hash = shelf_->labels().front().hash;
-    dds::SeenFront seen = test::front(1, 9);
-    seen.front.models.push_back({hash, {}, {}});
+    RefinementState seen = test::state();
+    seen.models.push_back({hash, {}, {}});
+    std::uint64_t serial = 9;
     const auto boxes = [&]
     {
-        ++seen.serial;
-        live_.publish({test::told(1, "one")}, {seen});
-        return get(fmt::format("/requested?controller={}&serial={}&model={}", id_text(seen.id),
-                               seen.serial, hash_text(hash)));
+        const dds::WatchedController one = test::told(1, "one", ++serial, seen);
+        live_.publish({one});
+        return get(fmt::format("/requested?controller={}&serial={}&model={}", id_text(one.id),
+                               serial, hash_text(hash)));
     };
     const std::string none = boxes();
     EXPECT_EQ(status_of(none), 200);
-    seen.front.models.back().requested = {{0}};
+    seen.models.back().requested = {{0}};
     const std::string one = boxes(); // The same cut: by that alone they would be the old ones.
     EXPECT_EQ(status_of(one), 200);
     EXPECT_EQ(one.size(), none.size() + 6 * sizeof(float) + 1); // 28 for 4 in the head.
-    seen.front.models.back().requested = {{0xFFFFU}};
+    seen.models.back().requested = {{0xFFFFU}};
     EXPECT_EQ(status_of(boxes()), 409);
 }
 

@@ -163,7 +163,7 @@ TEST(ReportPage, explains_every_answer_time_and_cause)
             const std::string words = std::string(" ") + word + ",";
             if (words.find(" " + name + ",") != std::string::npos)
             {
-                return std::string(meaning);
+                return meaning;
             }
         }
         return std::string();

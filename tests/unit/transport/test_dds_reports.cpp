@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// Common laws of the two reports of a controller, telemetry and refinement state, in transit.
+/// Laws of a controller's telemetry in transit, with a refinement state as its optional part.
 
 #include "rt_core/math/infinity.hpp"
 #include "tests/unit/transport/dds_rig.hpp"
-#include "transport/dds/front.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <dds/dds.h>
@@ -33,11 +32,13 @@ using test::kNan;
 /// Size of a report.
 struct Size
 {
-    std::uint32_t tools, models, pairs, pages, objects;
+    std::uint32_t tools, models, pairs, objects, state_models, pages;
 };
 
-constexpr Size kNothing{0, 0, 0, 0, 0};
-constexpr Size kSmall{1, 1, 1, 1, 1};
+constexpr Size kNothing{0, 0, 0, 0, 0, 0};
+constexpr Size kSmall{1, 1, 1, 1, 1, 1};
+constexpr Size kLargest{kMaxTools,        kMaxShownModels, kMaxPairs,
+                        kMaxShownObjects, kMaxModels,      kMaxStatePages};
 
 /// Different numbers, and flags that differ between records.
 class Distinct
@@ -161,68 +162,61 @@ std::vector<ModelIdentity> identities(std::uint32_t count)
 
 RefinementState refinement_state_of(const Size& size)
 {
-    RefinementState front;
+    RefinementState state;
     Distinct distinct;
-    distinct.fill(front.frame, front.time_ns, front.times, front.slots_left_out,
-                  front.regions_left_out);
-    front.time_ns = -front.time_ns;
+    distinct.fill(state.frame, state.times, state.slots_left_out, state.regions_left_out);
     auto& [splits, merges, scanned, nodes, triangles, looked_at, requests, regions, planes, work] =
-        front.budgets; // `planes` is not transmitted.
+        state.budgets; // `planes` is not transmitted.
     distinct.fill(splits, merges, scanned, nodes, triangles, looked_at, requests, regions, work);
-    front.sweep_begin = 40;
-    front.sweep_end = 56;
     for (std::uint32_t i = 0; i < size.tools; ++i)
     {
-        front.tools.push_back({static_cast<SafetyState>(i % kSafetyStates),
+        state.tools.push_back({static_cast<SafetyState>(i % kSafetyStates),
                                static_cast<ForceOff>(1U << (i % kForceOffs)),
                                std::string(i % (kMaxShapeBytes + 1), 's'), distinct.next<double>(),
                                i % 3 == 1});
     }
-    for (std::uint32_t i = 0; i < size.models; ++i)
+    for (std::uint32_t i = 0; i < size.state_models; ++i)
     {
-        RefinementStateModel& model = front.models.emplace_back();
+        RefinementStateModel& model = state.models.emplace_back();
         model.hash.fill(static_cast<std::uint8_t>(i + 1));
-        const std::uint32_t each = size.pages / size.models;
-        const std::uint32_t share = i + 1 < size.models ? each : size.pages - i * each;
+        const std::uint32_t each = size.pages / size.state_models;
+        const std::uint32_t share = i + 1 < size.state_models ? each : size.pages - i * each;
         for (std::uint32_t page = 0; page < share; ++page)
         {
             model.pages.push_back({{3 * page + 1}, distinct.next<std::uint64_t>() << 20U});
         }
-        for (std::uint32_t request = 0; request < kMaxStateRequests / size.models; ++request)
+        for (std::uint32_t request = 0; request < kMaxStateRequests / size.state_models; ++request)
         {
             model.requested.push_back({3 * request + 2});
         }
     }
-    for (std::uint32_t i = 0; size.models > 0 && i < kMaxStateRegions; ++i)
+    for (std::uint32_t i = 0; size.state_models > 0 && i < kMaxStateRegions; ++i)
     {
-        auto& [model, is_predicted, center_m, radius_m] = front.regions.emplace_back();
+        auto& [model, is_predicted, center_m, radius_m] = state.regions.emplace_back();
         distinct.fill(is_predicted, center_m, radius_m);
-        model = i % size.models;
+        model = i % size.state_models;
         center_m[1] = -center_m[1];
     }
-    for (std::uint32_t i = 0; i < size.objects; ++i)
-    {
-        auto& [server_epoch, object, number, model, pose] = front.objects.emplace_back();
-        distinct.fill(server_epoch, object, pose.translation_m);
-        server_epoch <<= 40U;
-        number = 4'095 - i;
-        model = i % size.models;
-        pose.rotation = {0.0, 0.6, 0.0, 0.8};
-        pose.scale = 1.0 + i;
-    }
-    return front;
+    return state;
 }
 
 /// Wire sample with one record of each kind, valid except for a test's change.
-struct TelemetrySample
+struct ReportSample
 {
     tactus_v5_ToolTelemetry tool = {};
     tactus_v5_PairTelemetry pair = {};
     tactus_v5_ModelTelemetry model = {};
     tactus_v5_ObjectTelemetry object = {};
+    tactus_v5_RefinementStateTool shown_tool = {};
+    tactus_v5_RefinementStateModel state_model = {};
+    std::array<std::uint32_t, 2> chunks{3, 4};
+    std::array<std::uint64_t, 2> refined{};
+    std::array<std::uint32_t, 2> requested{5, 6};
+    tactus_v5_RefinementStateRegion region = {};
+    tactus_v5_RefinementState state = {};
     tactus_v5_Telemetry sample = {};
 
-    TelemetrySample()
+    ReportSample()
     {
         std::strcpy(static_cast<char*>(model.name), "tiny");
         sample.tools = {1, 1, &tool, false};
@@ -231,161 +225,89 @@ struct TelemetrySample
         object.pose.scale = 1.0;
         sample.models = {1, 1, &model, false};
         sample.objects = {1, 1, &object, false};
+        state_model.pages = 2;
+        state_model.requested = 2;
+        state.tools = {1, 1, &shown_tool, false};
+        state.models = {1, 1, &state_model, false};
+        state.chunks = {2, 2, chunks.data(), false};
+        state.refined = {2, 2, refined.data(), false};
+        state.requested = {2, 2, requested.data(), false};
+        state.regions = {1, 1, &region, false};
+        sample.refinement_state = {1, 1, &state, false};
     }
 };
 
-struct RefinementStateSample
-{
-    tactus_v5_RefinementStateTool tool = {};
-    tactus_v5_RefinementStateModel model = {};
-    tactus_v5_RefinementStateObject object = {};
-    std::array<std::uint32_t, 2> chunks{3, 4};
-    std::array<std::uint64_t, 2> refined{};
-    std::array<std::uint32_t, 2> requested{5, 6};
-    tactus_v5_RefinementStateRegion region = {};
-    tactus_v5_RefinementState sample = {};
-
-    RefinementStateSample()
-    {
-        model.pages = 2;
-        model.requested = 2;
-        object.pose.rotation[3] = 1.0;
-        object.pose.scale = 1.0;
-        sample.tools = {1, 1, &tool, false};
-        sample.models = {1, 1, &model, false};
-        sample.objects = {1, 1, &object, false};
-        sample.chunks = {2, 2, chunks.data(), false};
-        sample.refined = {2, 2, refined.data(), false};
-        sample.requested = {2, 2, requested.data(), false};
-        sample.regions = {1, 1, &region, false};
-    }
+using S = ReportSample;
+const std::vector<void (*)(S&)> kReportFaults{
+    [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), ""); },
+    [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), "\x1b[31mred"); },
+    [](S& s) { std::strcpy(static_cast<char*>(s.model.name), "a\nb"); },
+    [](S& s) { s.tool.force_n[1] = kNan; },
+    [](S& s) { s.tool.position_m[0] = kInfinity; },
+    [](S& s) { s.tool.gripper_m = kNan; },
+    [](S& s) { s.tool.rotation[3] = kInfinity; },
+    [](S& s) { s.pair.tool = 1; },
+    [](S& s) { s.pair.kind = 5; },
+    [](S& s) { s.pair.upper_m = kNan; },
+    [](S& s) { s.pair.upper_m = -1.0; },
+    [](S& s) { s.pair.force_n[2] = kInfinity; },
+    [](S& s) { s.sample.sweep_begin = 5; },
+    [](S& s) { s.sample.sweep_end = kMaxObjects + 1; },
+    [](S& s) { s.object.number = kMaxObjects; },
+    [](S& s) { s.object.pose.rotation[0] = 1.0; },
+    [](S& s) { s.object.pose.translation_m[2] = kNan; },
+    [](S& s) { std::strcpy(static_cast<char*>(s.object.name), "\x1b[31m"); },
+    [](S& s) { s.state.times[6].max_ns = kNan; },
+    [](S& s) { s.state.times[0].mean_ns = -1.0; },
+    [](S& s) { s.shown_tool.state = kSafetyStates; },
+    [](S& s) { s.shown_tool.causes = 1U << kForceOffs; },
+    [](S& s) { s.shown_tool.radius_m = kNan; },
+    [](S& s) { std::strcpy(static_cast<char*>(s.shown_tool.shape), "\x1b[31m"); },
+    [](S& s) { s.state_model.pages = 1; },
+    [](S& s) { s.state_model.pages = 0xFFFF'FFFFU; },
+    [](S& s) { s.state.refined._length = 1; },
+    [](S& s) { s.chunks[1] = s.chunks[0]; },
+    [](S& s) { s.chunks[1] = 0xFFFF'FFFFU; },
+    [](S& s) { s.state_model.requested = 1; },
+    [](S& s) { s.state_model.requested = 0xFFFF'FFFFU; },
+    [](S& s) { s.requested[1] = s.requested[0]; },
+    [](S& s) { s.requested[1] = 0xFFFF'FFFFU; },
+    [](S& s) { s.region.model = 1; },
+    [](S& s) { s.region.center_m[1] = static_cast<float>(kNan); },
+    [](S& s) { s.region.radius_m = static_cast<float>(kNan); },
+    [](S& s) { s.region.radius_m = -1.0F; },
+    [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), "two words"); },
 };
 
-/// Specific part of one report.
-struct TelemetryReport
-{
-    using Reader = TelemetryReader;
-    using Sample = TelemetrySample;
-    static constexpr Topic kTopic = Topic::telemetry;
-    static constexpr Size kLargest{kMaxTools, kMaxShownModels, kMaxPairs, 0, kMaxShownObjects};
-
-    static auto writer(const Domain& domain, const std::string& name, const Size& size)
-    {
-        return std::move(TelemetryWriter::create(domain, name, identities(size.models))).value();
-    }
-    static auto made(const Size& size) { return std::pair(telemetry_of(size), objects_of(size)); }
-    static void write(TelemetryWriter& writer, const std::pair<Telemetry, ObjectsTelemetry>& report)
-    {
-        writer.write(report.first, report.second);
-    }
-    static const auto& seen(const Reader& reader) { return reader.controllers(); }
-    static void expect_same(const WatchedController& got, const Size& size)
-    {
-        EXPECT_EQ(got.name, "one");
-        EXPECT_EQ(got.models, identities(size.models));
-        EXPECT_TRUE(got.telemetry == telemetry_of(size));
-        EXPECT_TRUE(got.objects == objects_of(size));
-    }
-
-    using S = Sample;
-    static inline const std::vector<void (*)(Sample&)> kFaults{
-        [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), ""); },
-        [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), "\x1b[31mred"); },
-        [](S& s) { std::strcpy(static_cast<char*>(s.model.name), "a\nb"); },
-        [](S& s) { s.tool.force_n[1] = kNan; },
-        [](S& s) { s.tool.position_m[0] = kInfinity; },
-        [](S& s) { s.tool.gripper_m = kNan; },
-        [](S& s) { s.tool.rotation[3] = kInfinity; },
-        [](S& s) { s.pair.tool = 1; },
-        [](S& s) { s.pair.kind = 5; },
-        [](S& s) { s.pair.upper_m = kNan; },
-        [](S& s) { s.pair.upper_m = -1.0; },
-        [](S& s) { s.pair.force_n[2] = kInfinity; },
-        [](S& s) { s.sample.sweep_begin = 5; },
-        [](S& s) { s.sample.sweep_end = kMaxObjects + 1; },
-        [](S& s) { s.object.number = kMaxObjects; },
-        [](S& s) { s.object.pose.rotation[0] = 1.0; },
-        [](S& s) { s.object.pose.translation_m[2] = kNan; },
-        [](S& s) { std::strcpy(static_cast<char*>(s.object.name), "\x1b[31m"); },
-    };
-};
-
-struct RefinementStateReport
-{
-    using Reader = RefinementStateReader;
-    using Sample = RefinementStateSample;
-    static constexpr Topic kTopic = Topic::front;
-    static constexpr Size kLargest{kMaxTools, kMaxModels, 0, kMaxStatePages, kMaxStateObjects};
-
-    static auto writer(const Domain& domain, const std::string& name, const Size& /*size*/)
-    {
-        return std::move(RefinementStateWriter::create(domain, name)).value();
-    }
-    static RefinementState made(const Size& size) { return refinement_state_of(size); }
-    static void write(RefinementStateWriter& writer, const RefinementState& report)
-    {
-        writer.write(report);
-    }
-    static const auto& seen(const Reader& reader) { return reader.fronts(); }
-    static void expect_same(const SeenFront& got, const Size& size)
-    {
-        EXPECT_TRUE(got.front == made(size));
-    }
-
-    using S = Sample;
-    static inline const std::vector<void (*)(Sample&)> kFaults{
-        [](S& s) { s.sample.times[6].max_ns = kNan; },
-        [](S& s) { s.sample.times[0].mean_ns = -1.0; },
-        [](S& s) { s.sample.sweep_begin = 5; },
-        [](S& s) { s.sample.sweep_end = kMaxObjects + 1; },
-        [](S& s) { s.tool.state = kSafetyStates; },
-        [](S& s) { s.tool.causes = 1U << kForceOffs; },
-        [](S& s) { s.tool.radius_m = kNan; },
-        [](S& s) { std::strcpy(static_cast<char*>(s.tool.shape), "\x1b[31m"); },
-        [](S& s) { s.object.model = 1; },
-        [](S& s) { s.object.number = kMaxObjects; },
-        [](S& s) { s.object.pose.rotation[0] = 1.0; },
-        [](S& s) { s.object.pose.translation_m[2] = kNan; },
-        [](S& s) { s.model.pages = 1; },
-        [](S& s) { s.model.pages = 0xFFFF'FFFFU; },
-        [](S& s) { s.sample.refined._length = 1; },
-        [](S& s) { s.chunks[1] = s.chunks[0]; },
-        [](S& s) { s.chunks[1] = 0xFFFF'FFFFU; },
-        [](S& s) { s.model.requested = 1; },
-        [](S& s) { s.model.requested = 0xFFFF'FFFFU; },
-        [](S& s) { s.requested[1] = s.requested[0]; },
-        [](S& s) { s.requested[1] = 0xFFFF'FFFFU; },
-        [](S& s) { s.region.model = 1; },
-        [](S& s) { s.region.center_m[1] = static_cast<float>(kNan); },
-        [](S& s) { s.region.radius_m = static_cast<float>(kNan); },
-        [](S& s) { s.region.radius_m = -1.0F; },
-    };
-};
-
-template <typename Report>
-class DdsReports : public ::testing::Test
+class DdsTelemetry : public ::testing::Test
 {
 protected:
     void SetUp() override
     {
         test::isolate_domains();
         viewer_.emplace(Domain::join(2).value());
-        sut_ = std::move(Report::Reader::create(*viewer_)).value();
+        sut_ = std::move(TelemetryReader::create(*viewer_, true)).value();
     }
     /// A controller is a participant: each has its own.
     struct Controller
     {
         Controller(const std::string& name, const Size& size)
-            : writer(Report::writer(domain, name, size)), report(Report::made(size))
+            : writer(
+                  std::move(TelemetryWriter::create(domain, name, identities(size.models))).value())
+            , telemetry(telemetry_of(size))
+            , objects(objects_of(size))
+            , state(refinement_state_of(size))
         {
         }
-        void write() { Report::write(*writer, report); }
+        void write() { writer->write(telemetry, objects, &state); }
 
         Domain domain{Domain::join(1).value()};
-        decltype(Report::writer(domain, {}, {})) writer;
-        decltype(Report::made({})) report;
+        std::unique_ptr<TelemetryWriter> writer;
+        Telemetry telemetry;
+        ObjectsTelemetry objects;
+        RefinementState state;
     };
-    [[nodiscard]] const auto& seen() const { return Report::seen(*sut_); }
+    [[nodiscard]] const auto& seen() const { return sut_->controllers(); }
     /// Writes until the reader satisfies the condition.
     [[nodiscard]] bool polled_until(
         const std::function<bool()>& is_so, const std::function<void()>& write = [] {})
@@ -400,88 +322,110 @@ protected:
     }
 
     std::optional<Domain> viewer_;
-    std::unique_ptr<typename Report::Reader> sut_;
+    std::unique_ptr<TelemetryReader> sut_;
 };
 
-using Reports = ::testing::Types<TelemetryReport, RefinementStateReport>;
-TYPED_TEST_SUITE(DdsReports, Reports);
-
-TYPED_TEST(DdsReports, come_as_they_were_sent_and_go_with_their_controller)
+TEST_F(DdsTelemetry, comes_as_it_was_sent_and_goes_with_its_controller)
 {
-    for (const Size& size : {kNothing, kSmall, TypeParam::kLargest})
+    for (const Size& size : {kNothing, kSmall, kLargest})
     {
-        typename TestFixture::Controller controller("one", size);
-        ASSERT_TRUE(this->polled_until(
+        Controller controller("one", size);
+        ASSERT_TRUE(polled_until(
             [&] { // The last one's end may still be in transit.
-                return this->seen().size() == 1 &&
-                       this->seen()[0].id == controller.domain.participants().own();
+                return seen().size() == 1 && seen()[0].id == controller.domain.participants().own();
             },
             [&] { controller.write(); }));
-        EXPECT_GT(this->seen()[0].serial, 0U);
-        EXPECT_LE(this->seen()[0].serial, controller.writer->sent());
-        TypeParam::expect_same(this->seen()[0], size);
+        const WatchedController& got = seen()[0];
+        EXPECT_GT(got.serial, 0U);
+        EXPECT_LE(got.serial, controller.writer->sent());
+        EXPECT_EQ(controller.writer->states_sent(), controller.writer->sent());
+        EXPECT_EQ(got.name, "one");
+        EXPECT_EQ(got.models, identities(size.models));
+        EXPECT_TRUE(got.telemetry == controller.telemetry);
+        EXPECT_TRUE(got.objects == controller.objects);
+        ASSERT_NE(got.state, nullptr);
+        EXPECT_EQ(got.state->serial, got.serial);
+        EXPECT_TRUE(got.state->state == controller.state);
     }
-    EXPECT_TRUE(this->polled_until([&] { return this->seen().empty(); }));
-    EXPECT_EQ(this->sut_->refused(), 0U);
+    EXPECT_TRUE(polled_until([&] { return seen().empty(); }));
+    EXPECT_EQ(sut_->refused(), 0U);
+}
+
+TEST_F(DdsTelemetry, keeps_the_last_state_while_samples_have_none)
+{
+    Controller controller("one", kSmall);
+    ASSERT_TRUE(polled_until([&] { return !seen().empty(); }, [&] { controller.write(); }));
+    controller.write();
+    const std::uint64_t with_state = controller.writer->sent();
+    for (int i = 0; i < 10; ++i) // As many as between two states, and without a poll.
+    {
+        controller.writer->write(controller.telemetry);
+    }
+    ASSERT_TRUE(polled_until([&] { return seen()[0].serial == controller.writer->sent(); }));
+    EXPECT_EQ(seen()[0].state->serial, with_state);
+    EXPECT_TRUE(seen()[0].objects.objects.empty());
+    EXPECT_EQ(controller.writer->states_sent(), with_state);
+}
+
+TEST_F(DdsTelemetry, is_written_with_states_only_while_a_reader_wants_them)
+{
+    const Controller controller("one", kSmall);
+    ASSERT_TRUE(eventually([&] { return controller.writer->wants_states(); }));
+    sut_ = std::move(TelemetryReader::create(*viewer_)).value();
+    EXPECT_TRUE(eventually([&] { return !controller.writer->wants_states(); }));
+    EXPECT_TRUE(eventually([&] { return controller.writer->is_watched(); }));
+    EXPECT_FALSE(controller.writer->wants_states());
 }
 
 /// A writer may claim to be another, or many: nothing of that enters the reader.
-TYPED_TEST(DdsReports, of_a_controller_that_they_do_not_come_from_are_not_heard)
+TEST_F(DdsTelemetry, of_a_controller_that_it_does_not_come_from_is_not_heard)
 {
-    typename TestFixture::Controller controller("good", kSmall);
+    Controller controller("good", kSmall);
     const Domain stranger = Domain::join(1).value();
-    const auto writer = std::move(make_writer(stranger, TypeParam::kTopic, "good")).value();
+    const auto writer = std::move(make_writer(stranger, Topic::telemetry, "good")).value();
     ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
-    ASSERT_TRUE(this->polled_until(
-        [&] { return !this->seen().empty(); },
-        [&]
-        {
-            for (std::uint32_t i = 0; i < 100; ++i)
-            {
-                typename TypeParam::Sample lie;
-                std::memcpy(lie.sample.controller, &i, sizeof(i));
-                std::strcpy(static_cast<char*>(lie.sample.controller_name), "many");
-                dds_write(writer.handle, &lie.sample);
-            }
-            controller.write();
-        }));
-    EXPECT_EQ(this->seen().size(), 1U);
-    EXPECT_EQ(this->seen()[0].id, controller.domain.participants().own());
-    EXPECT_EQ(this->sut_->refused(), 0U);
+    ASSERT_TRUE(polled_until([&] { return !seen().empty(); },
+                             [&]
+                             {
+                                 for (std::uint32_t i = 0; i < 100; ++i)
+                                 {
+                                     ReportSample lie;
+                                     std::memcpy(lie.sample.controller, &i, sizeof(i));
+                                     std::strcpy(static_cast<char*>(lie.sample.controller_name),
+                                                 "many");
+                                     dds_write(writer.handle, &lie.sample);
+                                 }
+                                 controller.write();
+                             }));
+    EXPECT_EQ(seen().size(), 1U);
+    EXPECT_EQ(seen()[0].id, controller.domain.participants().own());
+    EXPECT_EQ(sut_->refused(), 0U);
 }
 
-TYPED_TEST(DdsReports, with_a_fault_in_them_are_refused)
+TEST_F(DdsTelemetry, with_a_fault_in_it_is_refused)
 {
-    using Sample = typename TypeParam::Sample;
-    std::vector<void (*)(Sample&)> faults = TypeParam::kFaults;
-    faults.push_back([](Sample& s)
-                     { std::strcpy(static_cast<char*>(s.sample.controller_name), "two words"); });
     const Domain controller = Domain::join(1).value();
     const ControllerId id = controller.participants().own();
-    const auto writer = std::move(make_writer(controller, TypeParam::kTopic, "good")).value();
+    const auto writer = std::move(make_writer(controller, Topic::telemetry, "good")).value();
     ASSERT_TRUE(eventually([&] { return is_matched(writer); }));
-    for (std::size_t i = 0; i <= faults.size(); ++i)
+    for (std::size_t i = 0; i <= kReportFaults.size(); ++i)
     {
-        Sample sample;
+        ReportSample sample;
         std::memcpy(sample.sample.controller, id.data(), id.size());
         std::strcpy(static_cast<char*>(sample.sample.controller_name), "good");
-        const bool is_good = i == faults.size();
+        const bool is_good = i == kReportFaults.size();
         if (!is_good)
         {
-            faults[i](sample);
+            kReportFaults[i](sample);
         }
-        const std::uint64_t before = this->sut_->refused();
-        EXPECT_TRUE(this->polled_until(
-            [&] { return is_good ? !this->seen().empty() : this->sut_->refused() > before; },
-            [&] { dds_write(writer.handle, &sample.sample); }))
+        const std::uint64_t before = sut_->refused();
+        EXPECT_TRUE(polled_until([&]
+                                 { return is_good ? !seen().empty() : sut_->refused() > before; },
+                                 [&] { dds_write(writer.handle, &sample.sample); }))
             << i;
-        EXPECT_EQ(this->seen().empty(), !is_good) << i;
+        EXPECT_EQ(seen().empty(), !is_good) << i;
     }
 }
-
-class DdsTelemetry : public DdsReports<TelemetryReport>
-{
-};
 
 /// 70 together, each of which continues as if alone, and one that stays when the others leave.
 TEST_F(DdsTelemetry, of_more_than_64_controllers_is_watched_until_they_leave)
@@ -514,7 +458,7 @@ TEST_F(DdsTelemetry, that_holds_more_than_its_bounds_never_leaves)
     const Domain controller = Domain::join(1).value();
     const auto writer = std::move(make_writer(controller, Topic::telemetry, "long")).value();
     std::vector<tactus_v5_ToolTelemetry> tools(kMaxTools + 1);
-    TelemetrySample sample;
+    ReportSample sample;
     std::strcpy(static_cast<char*>(sample.sample.controller_name), "long");
     sample.sample.tools = {kMaxTools + 1, kMaxTools + 1, tools.data(), false};
     EXPECT_NE(dds_write(writer.handle, &sample.sample), DDS_RETCODE_OK);

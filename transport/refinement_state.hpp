@@ -8,7 +8,6 @@
 #include "rt_core/records/safety.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/ids.hpp"
-#include "transport/pose.hpp"
 
 #include <array>
 #include <cstddef>
@@ -22,11 +21,6 @@ namespace tactus
 
 /// Maximum number of page slots in one refinement state: 256 Ki records, 33 MB of pages.
 inline constexpr std::size_t kMaxStatePages = 4'096;
-/// Length of the range of object numbers that a refinement state lists in full (sweep_begin),
-/// besides the objects of awake pairs.
-inline constexpr std::uint32_t kFrontSweep = 16;
-/// Maximum number of objects in one refinement state.
-inline constexpr std::size_t kMaxStateObjects = 2 * kFrontSweep;
 /// Maximum number of requests in one refinement state, over all models; no fewer than a ChunkLoader
 /// keeps open.
 inline constexpr std::size_t kMaxStateRequests = 256;
@@ -67,21 +61,8 @@ struct RefinementStateRegion
     bool operator==(const RefinementStateRegion&) const = default;
 };
 
-/// Pose of an object at the end of the frame.
-struct RefinementStateObject
-{
-    /// Epoch of the server that shows the object; 0: placed by the controller.
-    std::uint64_t server_epoch{0};
-    std::uint32_t object{0}; ///< Number of the object on that server, or on the controller.
-    std::uint32_t number{0}; ///< Number of the object on the controller.
-    std::uint32_t model{0};  ///< Index into RefinementState::models.
-    Pose pose;               ///< Pose of the model's frame (ModelHeader::origin_m) in the world.
-
-    bool operator==(const RefinementStateObject&) const = default;
-};
-
-/// Region in its wire form. `model` is the controller's model number, not yet an index.
-[[nodiscard]] inline RefinementStateRegion front_region_of(const RankedRegion& region) noexcept
+/// Region in its reported form. `model` is the controller's model number, not yet an index.
+[[nodiscard]] inline RefinementStateRegion shown_region_of(const RankedRegion& region) noexcept
 {
     RefinementStateRegion shown{
         region.model.value, region.horizon_ns > 0, {}, static_cast<float>(region.radius_m)};
@@ -117,25 +98,18 @@ struct FrontTimes
 /// Number of timed spans: each stage in order, then the whole frame, then the frame's CPU time.
 inline constexpr std::size_t kFrontTimes = kStages + 2;
 
-/// Refinement state of a controller, published at most ten times a second. A viewer with the model
-/// and the Telemetry draws the controller's own faces from it.
+/// Refinement state of a controller: a part of its telemetry, at most ten times a second. A viewer
+/// with the model draws the controller's own faces from it.
 struct RefinementState
 {
     std::uint64_t frame{0}; ///< Number of frames run.
-    std::int64_t time_ns{0};
     std::array<FrontTimes, kFrontTimes> times{};
-    Budgets budgets; ///< Budgets of the frame.
-    /// Start of the range of object numbers, up to `sweep_end`, in which `objects` lists every
-    /// object.
-    std::uint32_t sweep_begin{0};
-    std::uint32_t sweep_end{0};
+    Budgets budgets;                 ///< Budgets of the frame.
     std::uint32_t slots_left_out{0}; ///< Number of page slots omitted beyond kMaxStatePages.
     /// Number of regions omitted beyond kMaxStateRegions, those of lowest priority.
     std::uint32_t regions_left_out{0};
     std::vector<RefinementStateTool> tools;
-    /// Models with pages or requests, and the models of `objects` and `regions`.
-    std::vector<RefinementStateModel> models;
-    std::vector<RefinementStateObject> objects;
+    std::vector<RefinementStateModel> models;   ///< Models with pages, requests or regions.
     std::vector<RefinementStateRegion> regions; ///< Regions, highest priority first.
 
     bool operator==(const RefinementState&) const = default;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/dds/front.hpp"
+#include "transport/dds/refinement_state.hpp"
 
+#include "rt_core/base/assert.hpp"
 #include "transport/base/printable.hpp"
-#include "transport/dds/newest.hpp"
-#include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"
-#include "transport/model_name.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +14,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "tactus.h"
 
@@ -38,9 +37,6 @@ template <typename From, typename To>
 void copy_head(const From& from, To& to)
 {
     to.frame = from.frame;
-    to.time_ns = from.time_ns;
-    to.sweep_begin = from.sweep_begin;
-    to.sweep_end = from.sweep_end;
     to.slots_left_out = from.slots_left_out;
     to.regions_left_out = from.regions_left_out;
     for (std::size_t i = 0; i < kFrontTimes; ++i)
@@ -66,22 +62,6 @@ std::optional<RefinementStateTool> tool_from(const tactus_v5_RefinementStateTool
     return RefinementStateTool{static_cast<SafetyState>(wire.state),
                                static_cast<ForceOff>(wire.causes), std::string(shape),
                                wire.radius_m, wire.begins_inside};
-}
-
-std::optional<RefinementStateObject> object_from(const tactus_v5_RefinementStateObject& wire,
-                                                 std::uint32_t models)
-{
-    // An object's frame may be farther away than kPoseReachMax_m, since the origin of its model is
-    // added.
-    const Pose told = from_wire(wire.pose);
-    const auto pose = checked_pose(told);
-    const bool is_sound = pose || pose.error() == PoseRefusal::translation;
-    if (wire.model >= models || wire.number >= kMaxObjects || !is_sound)
-    {
-        return std::nullopt;
-    }
-    return RefinementStateObject{wire.server_epoch, wire.object, wire.number, wire.model,
-                                 pose ? pose.value() : told};
 }
 
 /// True if the model may have this chunk and its number is above `last`, none at first.
@@ -159,17 +139,6 @@ tactus_v5_RefinementStateTool to_wire(const RefinementStateTool& tool)
     return wire;
 }
 
-tactus_v5_RefinementStateObject to_wire(const RefinementStateObject& object)
-{
-    tactus_v5_RefinementStateObject wire = {};
-    wire.server_epoch = object.server_epoch;
-    wire.object = object.object;
-    wire.number = object.number;
-    wire.model = static_cast<std::uint16_t>(object.model);
-    wire.pose = dds::to_wire(object.pose);
-    return wire;
-}
-
 tactus_v5_RefinementStateRegion to_wire(const RefinementStateRegion& region)
 {
     tactus_v5_RefinementStateRegion wire = {};
@@ -189,168 +158,100 @@ Sequence sequence_of(std::vector<Element>& elements)
 
 } // namespace
 
-std::optional<SeenFront> front_from(const tactus_v5_RefinementState& sample)
+std::optional<RefinementState> state_from(const tactus_v5_RefinementState& wire)
 {
     const bool is_in_bounds =
-        sample.tools._length <= kMaxTools && sample.models._length <= kMaxModels &&
-        sample.objects._length <= kMaxStateObjects && sample.chunks._length <= kMaxStatePages &&
-        sample.refined._length == sample.chunks._length &&
-        sample.requested._length <= kMaxStateRequests &&
-        sample.regions._length <= kMaxStateRegions && sample.sweep_begin <= sample.sweep_end &&
-        sample.sweep_end <= kMaxObjects;
-    if (!is_in_bounds || !is_valid_name(std::string(text_of(sample.controller_name))))
+        wire.tools._length <= kMaxTools && wire.models._length <= kMaxModels &&
+        wire.chunks._length <= kMaxStatePages && wire.refined._length == wire.chunks._length &&
+        wire.requested._length <= kMaxStateRequests && wire.regions._length <= kMaxStateRegions;
+    if (!is_in_bounds)
     {
         return std::nullopt;
     }
-    SeenFront seen{controller_of(sample), sample.serial, {}};
-    RefinementState& front = seen.front;
-    copy_head(sample, front);
+    RefinementState state;
+    copy_head(wire, state);
     for (std::size_t i = 0; i < kBudgetOrder.size(); ++i)
     {
-        front.budgets.*kBudgetOrder[i] = sample.budgets[i];
+        state.budgets.*kBudgetOrder[i] = wire.budgets[i];
     }
-    auto models = models_from(sample);
+    auto models = models_from(wire);
     const auto is_sound = [](const FrontTimes& t)
     { return is_amount(t.mean_ns) && is_amount(t.max_ns); };
-    if (!models || !std::ranges::all_of(front.times, is_sound))
+    if (!models || !std::ranges::all_of(state.times, is_sound))
     {
         return std::nullopt;
     }
-    front.models = *std::move(models);
-    for (std::uint32_t i = 0; i < sample.tools._length; ++i)
+    state.models = *std::move(models);
+    for (std::uint32_t i = 0; i < wire.tools._length; ++i)
     {
-        auto tool = tool_from(sample.tools._buffer[i]);
+        auto tool = tool_from(wire.tools._buffer[i]);
         if (!tool)
         {
             return std::nullopt;
         }
-        front.tools.push_back(*std::move(tool));
+        state.tools.push_back(*std::move(tool));
     }
-    for (std::uint32_t i = 0; i < sample.objects._length; ++i)
+    for (std::uint32_t i = 0; i < wire.regions._length; ++i)
     {
-        const auto object = object_from(sample.objects._buffer[i], sample.models._length);
-        if (!object)
-        {
-            return std::nullopt;
-        }
-        front.objects.push_back(*object);
-    }
-    for (std::uint32_t i = 0; i < sample.regions._length; ++i)
-    {
-        const auto region = region_from(sample.regions._buffer[i], sample.models._length);
+        const auto region = region_from(wire.regions._buffer[i], wire.models._length);
         if (!region)
         {
             return std::nullopt;
         }
-        front.regions.push_back(*region);
+        state.regions.push_back(*region);
     }
-    return seen;
+    return state;
 }
 
-Result<std::unique_ptr<RefinementStateWriter>, Refusal>
-RefinementStateWriter::create(const Domain& domain, std::string controller_name)
+void with_wire_state(const RefinementState& state,
+                     const std::function<void(tactus_v5_RefinementState&)>& use)
 {
-    auto endpoint = make_writer(domain, Topic::front, controller_name);
-    if (!endpoint)
-    {
-        return endpoint.error();
-    }
-    std::unique_ptr<RefinementStateWriter> writer(
-        new RefinementStateWriter(domain.participants().own(), std::move(controller_name)));
-    writer->writer_ = std::move(endpoint).value();
-    return writer;
-}
-
-RefinementStateWriter::RefinementStateWriter(const ControllerId& controller,
-                                             std::string controller_name)
-    : controller_(controller), controller_name_(std::move(controller_name))
-{
-    TACTUS_ASSERT(is_valid_name(controller_name_));
-}
-
-void RefinementStateWriter::write(const RefinementState& front)
-{
-    TACTUS_ASSERT(front.tools.size() <= kMaxTools);
-    TACTUS_ASSERT(front.models.size() <= kMaxModels);
-    TACTUS_ASSERT(front.objects.size() <= kMaxStateObjects);
-    TACTUS_ASSERT(front.regions.size() <= kMaxStateRegions);
+    TACTUS_ASSERT(state.tools.size() <= kMaxTools);
+    TACTUS_ASSERT(state.models.size() <= kMaxModels);
+    TACTUS_ASSERT(state.regions.size() <= kMaxStateRegions);
     std::vector<tactus_v5_RefinementStateTool> tools;
     std::vector<tactus_v5_RefinementStateModel> models;
-    std::vector<tactus_v5_RefinementStateObject> objects;
     std::vector<std::uint32_t> chunks;
     std::vector<std::uint64_t> refined;
     std::vector<std::uint32_t> requested;
     std::vector<tactus_v5_RefinementStateRegion> regions;
-    for (const RefinementStateTool& tool : front.tools)
+    for (const RefinementStateTool& tool : state.tools)
     {
         tools.push_back(to_wire(tool));
     }
-    for (const RefinementStateModel& model : front.models)
+    for (const RefinementStateModel& model : state.models)
     {
-        tactus_v5_RefinementStateModel& wire = models.emplace_back();
-        std::memcpy(wire.hash, model.hash.data(), model.hash.size());
-        wire.pages = static_cast<std::uint32_t>(model.pages.size());
+        tactus_v5_RefinementStateModel& told = models.emplace_back();
+        std::memcpy(told.hash, model.hash.data(), model.hash.size());
+        told.pages = static_cast<std::uint32_t>(model.pages.size());
         for (const RefinementStatePage& page : model.pages)
         {
             chunks.push_back(page.chunk.value);
             refined.push_back(page.refined);
         }
-        wire.requested = static_cast<std::uint32_t>(model.requested.size());
+        told.requested = static_cast<std::uint32_t>(model.requested.size());
         std::ranges::transform(model.requested, std::back_inserter(requested), &ChunkId::value);
     }
     TACTUS_ASSERT(chunks.size() <= kMaxStatePages);
     TACTUS_ASSERT(requested.size() <= kMaxStateRequests);
-    for (const RefinementStateObject& object : front.objects)
+    for (const RefinementStateRegion& region : state.regions)
     {
-        TACTUS_ASSERT(object.model < front.models.size());
-        objects.push_back(to_wire(object));
-    }
-    for (const RefinementStateRegion& region : front.regions)
-    {
-        TACTUS_ASSERT(region.model < front.models.size());
+        TACTUS_ASSERT(region.model < state.models.size());
         regions.push_back(to_wire(region));
     }
-    tactus_v5_RefinementState sample = {};
-    std::memcpy(sample.controller, controller_.data(), controller_.size());
-    controller_name_.copy(static_cast<char*>(sample.controller_name), kMaxNameBytes);
-    sample.serial = ++sent_;
-    copy_head(front, sample);
+    tactus_v5_RefinementState part = {};
+    copy_head(state, part);
     for (std::size_t i = 0; i < kBudgetOrder.size(); ++i)
     {
-        sample.budgets[i] = front.budgets.*kBudgetOrder[i];
+        part.budgets[i] = state.budgets.*kBudgetOrder[i];
     }
-    sample.tools = sequence_of<decltype(sample.tools)>(tools);
-    sample.models = sequence_of<decltype(sample.models)>(models);
-    sample.objects = sequence_of<decltype(sample.objects)>(objects);
-    sample.chunks = sequence_of<decltype(sample.chunks)>(chunks);
-    sample.refined = sequence_of<decltype(sample.refined)>(refined);
-    sample.requested = sequence_of<decltype(sample.requested)>(requested);
-    sample.regions = sequence_of<decltype(sample.regions)>(regions);
-    // A failed write counts as a lost sample; the next one replaces it.
-    dds_write(writer_.handle, &sample);
-}
-
-Result<std::unique_ptr<RefinementStateReader>, Refusal>
-RefinementStateReader::create(const Domain& domain)
-{
-    auto reader = make_reader(domain, Topic::front, kAnyPartition);
-    if (!reader)
-    {
-        return reader.error();
-    }
-    return std::unique_ptr<RefinementStateReader>(
-        new RefinementStateReader(domain.participants(), std::move(reader).value()));
-}
-
-RefinementStateReader::RefinementStateReader(Participants& participants, Endpoint reader)
-    : participants_(participants), reader_(std::move(reader))
-{
-}
-
-void RefinementStateReader::poll()
-{
-    refused_ += take_newest<tactus_v5_RefinementState>(reader_, participants_, kMaxSeen, fronts_,
-                                                       front_from);
+    part.tools = sequence_of<decltype(part.tools)>(tools);
+    part.models = sequence_of<decltype(part.models)>(models);
+    part.chunks = sequence_of<decltype(part.chunks)>(chunks);
+    part.refined = sequence_of<decltype(part.refined)>(refined);
+    part.requested = sequence_of<decltype(part.requested)>(requested);
+    part.regions = sequence_of<decltype(part.regions)>(regions);
+    use(part);
 }
 
 } // namespace tactus::dds

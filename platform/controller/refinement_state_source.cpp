@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/controller/refinement_state_sender.hpp"
+#include "platform/controller/refinement_state_source.hpp"
 
 #include "platform/controller/controller.hpp"
-#include "platform/scene/scene_keeper.hpp"
 #include "rt_core/cache/slot_queues.hpp"
 #include "rt_core/scene/object_table.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/chunk_loader.hpp"
-#include "transport/dds/dds_client.hpp"
 #include "transport/telemetry_from_frame.hpp"
 
 #include <algorithm>
@@ -47,8 +45,8 @@ std::vector<std::vector<ChunkId>> requested_of(const Controller& controller)
     return requested;
 }
 
-/// Adds the models of which the copy has pages, objects or regions, or of which chunks are
-/// requested. Returns the index in RefinementState::models of each; only valid for these models.
+/// Adds the models of which the copy has pages or regions, or of which chunks are requested.
+/// Returns the index in RefinementState::models of each; only valid for these models.
 std::vector<std::uint32_t> add_models(const RefinementStateCopy& copy, const Controller& controller,
                                       RefinementState& front)
 {
@@ -56,10 +54,6 @@ std::vector<std::uint32_t> add_models(const RefinementStateCopy& copy, const Con
     for (const ShownPage& slot : copy.slots)
     {
         places[slot.owner] |= slot.chunk.is_none() ? 0U : 1U;
-    }
-    for (const RefinementStateCopy::Object& object : copy.objects)
-    {
-        places[object.model] = 1;
     }
     for (const RefinementStateRegion& region : copy.regions)
     {
@@ -93,14 +87,11 @@ std::vector<std::uint32_t> add_models(const RefinementStateCopy& copy, const Con
 
 RefinementState refinement_state_of(const RefinementStateCopy& copy,
                                     const RefinementStateCopy::AllTimes& before,
-                                    const Controller& controller, const SceneKeeper* keeper)
+                                    const Controller& controller)
 {
     RefinementState front;
     front.frame = copy.frame;
-    front.time_ns = copy.start.ns;
     front.budgets = copy.budgets;
-    front.sweep_begin = copy.sweep_begin;
-    front.sweep_end = copy.sweep_end;
     front.slots_left_out = copy.slots_left_out;
     front.regions_left_out = copy.regions_left_out;
     std::ranges::transform(copy.times, before, front.times.begin(), times_since);
@@ -111,13 +102,6 @@ RefinementState refinement_state_of(const RefinementStateCopy& copy,
                                printable(setup.shape, kMaxShapeBytes), setup.spec.radius_m});
     }
     const std::vector<std::uint32_t> places = add_models(copy, controller, front);
-    for (const RefinementStateCopy::Object& object : copy.objects)
-    {
-        const auto shown = keeper != nullptr ? keeper->shown_as(object.number) : std::nullopt;
-        front.objects.push_back({shown ? shown->server_epoch : 0,
-                                 shown ? shown->number : object.number, object.number,
-                                 places[object.model], pose_of(object.pose)});
-    }
     for (const RefinementStateRegion& region : copy.regions)
     {
         front.regions.push_back(region);
@@ -126,43 +110,34 @@ RefinementState refinement_state_of(const RefinementStateCopy& copy,
     return front;
 }
 
-Result<std::unique_ptr<RefinementStateSender>, Refusal>
-RefinementStateSender::create(const dds::DdsClient& client, const Controller& controller)
+std::optional<RefinementState> RefinementStateSource::take(MonotonicTime now,
+                                                           const dds::TelemetryWriter& writer)
 {
-    auto writer = dds::RefinementStateWriter::create(client.domain(), client.controller_name());
-    if (!writer)
+    const RefinementStateCopy* copy = now - last_ < kPeriod ? nullptr : tap_->take();
+    if (copy == nullptr)
     {
-        return writer.error();
+        return std::nullopt;
     }
-    std::unique_ptr<RefinementStateSender> sender(new RefinementStateSender(controller));
-    sender->writer_ = std::move(writer).value();
-    return sender;
-}
-
-void RefinementStateSender::step(MonotonicTime now, const SceneKeeper* keeper)
-{
-    if (now - last_sent_ < kPeriod || !writer_->is_watched())
+    last_ = now;
+    if (!writer.wants_states())
     {
-        is_old_ = is_old_ || !writer_->is_watched();
-        return;
+        is_old_ = true;
+        return std::nullopt;
     }
-    if (const RefinementStateCopy* copy = tap_->take())
+    std::optional<RefinementState> state;
+    if (!is_old_)
     {
-        last_sent_ = now;
-        if (!is_old_)
+        state = refinement_state_of(*copy, last_times_, controller_);
+        const std::uint32_t inside = begin_inside_.load(std::memory_order_relaxed);
+        for (std::size_t tool = 0; tool < state->tools.size(); ++tool)
         {
-            RefinementState front = refinement_state_of(*copy, last_, controller_, keeper);
-            const std::uint32_t inside = begin_inside_.load(std::memory_order_relaxed);
-            for (std::size_t tool = 0; tool < front.tools.size(); ++tool)
-            {
-                front.tools[tool].begins_inside = (inside >> tool & 1U) != 0;
-            }
-            writer_->write(front);
+            state->tools[tool].begins_inside = (inside >> tool & 1U) != 0;
         }
-        is_old_ = false;
-        last_ = copy->times;
-        tap_->give_back();
     }
+    is_old_ = false;
+    last_times_ = copy->times;
+    tap_->give_back();
+    return state;
 }
 
 } // namespace tactus::hrtc
