@@ -79,6 +79,11 @@ void visit_sequences(tactus_v5_EditRequests& sample, const Visit& visit)
 {
     visit(sample.hull, tactus_v5_max_hull_vertices);
 }
+template <typename Visit>
+void visit_sequences(tactus_v5_Wanted& sample, const Visit& visit)
+{
+    visit(sample.pieces, tactus_v5_max_requests);
+}
 
 /// Makes what Cyclone promises of a sample true: a bounded string ends, and a bool is 0 or 1.
 template <std::size_t Size>
@@ -135,6 +140,10 @@ inline void make_true(tactus_v5_RefinementState& state)
 {
     make_true(state.controller_name);
 }
+inline void make_true(tactus_v5_Wanted& wanted)
+{
+    make_true(wanted.controller_name);
+}
 
 /// Reads samples from bytes; those past the end are 0. It owns their sequences, each of which has
 /// its exact size, so that reads beyond the end are detected.
@@ -185,11 +194,10 @@ private:
     std::vector<std::unique_ptr<std::byte[]>> owned_; // NOLINT: its size is exact.
 };
 
-/// Bytes of a sample, as SampleReader reads them. All padding of `sample` must be 0.
+/// Appends the bytes of a sample, as SampleReader reads them. All padding of `sample` must be 0.
 template <typename Sample>
-[[nodiscard]] std::vector<std::byte> sample_script(SampleKind kind, Sample sample)
+void append_sample(std::vector<std::byte>& script, Sample sample)
 {
-    std::vector<std::byte> script{static_cast<std::byte>(kind)};
     const auto put = [&](const void* from, std::size_t size)
     {
         const auto* bytes = static_cast<const std::byte*>(from);
@@ -206,6 +214,14 @@ template <typename Sample>
                         put(&length, sizeof(length));
                         put(sequence._buffer, length * sizeof(*sequence._buffer));
                     });
+}
+
+/// The number of a kind, and a sample of that kind.
+template <typename Sample>
+[[nodiscard]] std::vector<std::byte> sample_script(SampleKind kind, const Sample& sample)
+{
+    std::vector<std::byte> script{static_cast<std::byte>(kind)};
+    append_sample(script, sample);
     return script;
 }
 
