@@ -337,6 +337,16 @@ void make_piece_requests(const fs::path& folder)
     wanted.pieces = {1, 1, pieces + 3, false};
     add(kSends);
     put_seed(folder / "known_before", script);
+
+    script.clear();
+    wanted.seen = wanted.received = 0; // Nothing arrives.
+    wanted.granted = UINT64_MAX;
+    wanted.pieces = {count, count, pieces, false};
+    for (std::uint32_t sent = 0; sent <= dds::kCreditPieces; sent += count)
+    {
+        add(kSends);
+    }
+    put_seed(folder / "credit_used_up", script);
 }
 
 } // namespace
