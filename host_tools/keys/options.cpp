@@ -77,8 +77,7 @@ void declare_options(CommandLine& line, Site& site, Names& names)
         .show_default();
     line.add_option(
             "--output", site.output,
-            "Folder for NAME/ and NAME.tar of each name; unpack the archive in /etc/tactus of its "
-            "machine")
+            "Folder for NAME/ and NAME.tar of each name; unpack the archive in /etc of its machine")
         .show_default();
     line.add_log_options();
 }

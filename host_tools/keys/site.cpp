@@ -153,7 +153,7 @@ namespace
 
 struct ArchivedFile
 {
-    std::string name; ///< Name within the folder, with it at most 99 bytes.
+    std::string name; ///< At most 99 bytes; in an archive with its folders below /etc.
     std::string bytes;
     bool is_secret{false}; ///< Mode 0600, else 0644.
 };
@@ -190,15 +190,14 @@ std::string header(const std::string& name, std::size_t bytes, unsigned mode, ch
     return block;
 }
 
-/// A tar archive (ustar) of one folder with these files, all of the user root.
+/// A tar archive (ustar) of a folder and of these files, all of the user root.
 std::string archive(const std::string& folder, const std::vector<ArchivedFile>& files,
                     std::time_t time)
 {
     std::string text = header(folder + "/", 0, 0755, '5', time);
     for (const ArchivedFile& file : files)
     {
-        text += header(folder + "/" + file.name, file.bytes.size(), file.is_secret ? 0600 : 0644,
-                       '0', time);
+        text += header(file.name, file.bytes.size(), file.is_secret ? 0600 : 0644, '0', time);
         text += file.bytes;
         text.append((kBlock - file.bytes.size() % kBlock) % kBlock, '\0');
     }
@@ -209,8 +208,6 @@ namespace fs = std::filesystem;
 
 /// Clocks of machines differ: validity begins a day before.
 constexpr std::time_t kSlack_s = kDay_s;
-/// The archive's folder, below /etc/tactus.
-constexpr const char* kFolder = "keys";
 
 /// During its lifetime, new files of the process are unreadable for other users.
 class OwnFiles
@@ -232,20 +229,49 @@ struct Period
     std::time_t until;
 };
 
-/// Drop-in for systemd, which gives the keys to a service with a separate user.
-std::string credentials()
+/// Name of the systemd service of this role.
+const char* service_of(Role role) noexcept
+{
+    switch (role)
+    {
+    case Role::server:
+        return "spm_publish";
+    case Role::viewer:
+        return "spm_view";
+    case Role::controller:
+    case Role::editor:
+        break;
+    }
+    return "hrtc";
+}
+
+/// Drop-in for systemd: the service, which has a separate user, gets the keys of this folder below
+/// /etc, and refuses to run without them.
+std::string drop_in(const std::string& folder)
 {
     std::string text =
-        "# For /etc/systemd/system/NAME.service.d: the service reads its keys in "
-        "/run/credentials/NAME.service\n"
         "# A clock before the certificates is refused: systemd-time-wait-sync.service "
         "waits for the time.\n"
-        "[Unit]\nAfter=time-sync.target\n[Service]\n";
+        "[Unit]\nAfter=time-sync.target\n[Service]\n"
+        "Environment=\"KEYS=--security %d --require-security\"\n";
     for (const char* file : dds::kKeyFiles)
     {
-        text += fmt::format("LoadCredential={0}:/etc/tactus/{1}/{0}\n", file, kFolder);
+        text += fmt::format("LoadCredential={0}:/etc/{1}/{0}\n", file, folder);
     }
     return text;
+}
+
+/// Archive of these keys and of the drop-in, to be unpacked in /etc.
+std::string archive_of(const Member& member, std::vector<ArchivedFile> files, std::time_t now)
+{
+    const std::string folder = "tactus/keys/" + member.name;
+    for (ArchivedFile& file : files)
+    {
+        file.name.insert(0, folder + "/");
+    }
+    files.push_back({fmt::format("systemd/system/{}.service.d/keys.conf", service_of(member.role)),
+                     drop_in(folder)});
+    return archive(folder, files, now);
 }
 
 bool has(const std::vector<std::string>& names, const std::string& name)
@@ -265,7 +291,7 @@ Identity kept_identity(const fs::path& folder, const std::string& name, const Au
 }
 
 std::optional<Refusal> write_files(const fs::path& folder, const std::vector<ArchivedFile>& files,
-                                   std::time_t now)
+                                   const std::string& archive)
 {
     std::error_code error;
     fs::create_directories(folder, error);
@@ -279,7 +305,7 @@ std::optional<Refusal> write_files(const fs::path& folder, const std::vector<Arc
     {
         refusal = refusal ? refusal : write_text(file.bytes, folder / file.name);
     }
-    return refusal ? refusal : write_text(archive(kFolder, files, now), folder.string() + ".tar");
+    return refusal ? refusal : write_text(archive, folder.string() + ".tar");
 }
 
 Result<IssuedKeys, Refusal> make_member(const Site& site, const Member& member,
@@ -314,9 +340,8 @@ Result<IssuedKeys, Refusal> make_member(const Site& site, const Member& member,
                                           {dds::kKeyFile, text_of(identity.key.get()), true},
                                           {dds::kGovernanceFile, signed_governance},
                                           {dds::kPermissionsFile, rights},
-                                          {dds::kCrlFile, authority.crl()},
-                                          {kCredentialsFile, credentials()}};
-    if (const auto refusal = write_files(folder, files, period.now))
+                                          {dds::kCrlFile, authority.crl()}};
+    if (const auto refusal = write_files(folder, files, archive_of(member, files, period.now)))
     {
         return *refusal;
     }

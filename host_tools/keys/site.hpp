@@ -33,9 +33,6 @@ enum class Role : std::uint8_t
 [[nodiscard]] std::string permissions(Role role, const std::string& name, std::uint32_t domain,
                                       std::time_t from, std::time_t until);
 
-/// Drop-in for the service, beside the keys.
-inline constexpr const char* kCredentialsFile = "credentials.conf";
-
 /// A program of a site, which gets keys of its own.
 struct Member
 {
@@ -66,8 +63,9 @@ struct IssuedKeys
 
 /// Makes the certificates that are missing, expired or to be renewed; valid ones stay. Signs rights
 /// and CRL for `days` from `now`, at most to the end of the authority. Writes a folder output/NAME
-/// for each member, and an archive output/NAME.tar with the same files in keys/. Refused if a file
-/// can't be read or written.
+/// for each member, and an archive output/NAME.tar for /etc: the same files in tactus/keys/NAME/,
+/// and a drop-in that gives them to the systemd service of the role. Refused if a file can't be
+/// read or written.
 [[nodiscard]] Result<std::vector<IssuedKeys>, Refusal> make_keys(const Site& site, std::time_t now);
 
 } // namespace tactus::keys

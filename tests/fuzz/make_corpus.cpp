@@ -3,8 +3,8 @@
 
 /// make_corpus FOLDER: rewrites the seeds that contain this build's formats: models of one chunk,
 /// of two with a border, and without records; recordings, a whole one and one with lost frames;
-/// conversations with a udp device; edits of a model; and a sample of each topic of DDS. The same
-/// build writes the same bytes.
+/// conversations with a udp device; edits of a model; requests of pieces; and a sample of each
+/// other topic of DDS. The same build writes the same bytes.
 
 #include "host_tools/shapes/shapes.hpp"
 #include "platform/devices/udp/datagram.hpp"
@@ -282,6 +282,70 @@ void make_samples(const fs::path& folder)
     make_reports(folder);
 }
 
+/// Requests of all pieces of two models of 200 and of 70 records, with credit for one after the
+/// other.
+void make_piece_requests(const fs::path& folder)
+{
+    constexpr unsigned kSends = 1;
+    tactus_v5_PieceName pieces[16];
+    std::memset(pieces, 0, sizeof pieces); // Seeds hold the padding, too.
+    std::uint32_t count = 0;
+    for (std::uint16_t model = 0; model < 2; ++model)
+    {
+        const std::uint32_t chunks = model == 0 ? 4 : 2;
+        for (std::uint8_t kind = 0; kind < 4; ++kind)
+        {
+            for (std::uint32_t number = 0; number < (kind == 2 ? chunks : 1U); ++number)
+            {
+                pieces[count].model = model;
+                pieces[count].kind = kind;
+                pieces[count].number = number;
+                ++count;
+            }
+        }
+    }
+    auto wanted = zeros<tactus_v5_Wanted>();
+    name(wanted.controller_name, "desk");
+    wanted.generation = 1;
+    wanted.objects = 1;
+    wanted.pieces = {count, count, pieces, false};
+    Bytes script;
+    const auto add = [&](unsigned control)
+    {
+        Bytes sample;
+        fuzz::append_sample(sample, wanted);
+        add_part(script, control, sample);
+    };
+    add(0); // There is no credit yet.
+    wanted.granted = 3;
+    add(kSends);
+    wanted.seen = wanted.received = 3;
+    wanted.granted = 128;
+    wanted.pieces = {0, 0, pieces, false};
+    add(kSends);
+    put_seed(folder / "all_pieces", script);
+
+    script.clear();
+    wanted.seen = wanted.received = 1'000; // The server took the controller for gone.
+    wanted.granted = 1'128;
+    wanted.pieces = {4, 4, pieces, false};
+    add(kSends);
+    wanted.generation = 0;
+    wanted.pieces = {1, 1, pieces + 3, false};
+    add(kSends);
+    put_seed(folder / "known_before", script);
+
+    script.clear();
+    wanted.seen = wanted.received = 0; // Nothing arrives.
+    wanted.granted = UINT64_MAX;
+    wanted.pieces = {count, count, pieces, false};
+    for (std::uint32_t sent = 0; sent <= dds::kCreditPieces; sent += count)
+    {
+        add(kSends);
+    }
+    put_seed(folder / "credit_used_up", script);
+}
+
 } // namespace
 
 int main(int argc, char** argv)
@@ -296,6 +360,7 @@ int main(int argc, char** argv)
     make_recordings(folder / "recording");
     make_edits(folder / "edit");
     make_samples(folder / "dds_samples");
+    make_piece_requests(folder / "piece_requests");
     put_seed(folder / "udp_session" / "version_2", conversation(udp::kVersion));
     put_seed(folder / "udp_session" / "version_1", conversation(udp::kVersionOfPoints));
     return 0;

@@ -84,6 +84,11 @@ void visit_sequences(tactus_v5_EditRequests& sample, const Visit& visit)
 {
     visit(sample.hull, tactus_v5_max_hull_vertices);
 }
+template <typename Visit>
+void visit_sequences(tactus_v5_Wanted& sample, const Visit& visit)
+{
+    visit(sample.pieces, tactus_v5_max_requests);
+}
 
 /// Makes what Cyclone promises of a sample true: a bounded string ends, and a bool is 0 or 1.
 template <std::size_t Size>
@@ -135,6 +140,10 @@ inline void make_true(tactus_v5_RefinementStateTool& tool)
 inline void make_true(tactus_v5_RefinementStateRegion& region)
 {
     make_true(region.is_predicted);
+}
+inline void make_true(tactus_v5_Wanted& wanted)
+{
+    make_true(wanted.controller_name);
 }
 
 /// Reads samples from bytes; those past the end are 0. It owns their sequences, each of which has
@@ -199,11 +208,10 @@ template <typename Sample>
     return sample;
 }
 
-/// Bytes of a sample, as SampleReader reads them. All padding of `sample` must be 0.
+/// Appends the bytes of a sample, as SampleReader reads them. All padding of `sample` must be 0.
 template <typename Sample>
-[[nodiscard]] std::vector<std::byte> sample_script(SampleKind kind, Sample sample)
+void append_sample(std::vector<std::byte>& script, Sample sample)
 {
-    std::vector<std::byte> script{static_cast<std::byte>(kind)};
     const auto put = [&](const auto& value)
     {
         const auto* bytes = reinterpret_cast<const std::byte*>(&value);
@@ -219,6 +227,14 @@ template <typename Sample>
                             put(without_sequences(sequence._buffer[i]));
                         }
                     });
+}
+
+/// The number of a kind, and a sample of that kind.
+template <typename Sample>
+[[nodiscard]] std::vector<std::byte> sample_script(SampleKind kind, const Sample& sample)
+{
+    std::vector<std::byte> script{static_cast<std::byte>(kind)};
+    append_sample(script, sample);
     return script;
 }
 

@@ -314,7 +314,7 @@ void DdsServer::on_request(const ControllerId& controller, const tactus_v5_Wante
         refuse(controller, Refused::controller);
         return;
     }
-    client->subscription.set_credit({wanted.seen, wanted.granted, wanted.received});
+    client->subscription.requests().set_credit({wanted.seen, wanted.granted, wanted.received});
     if (wanted.objects == 1)
     {
         const bool is_new =
@@ -374,16 +374,10 @@ void DdsServer::take_requests(Client& client, const tactus_v5_Wanted& wanted)
         refuse(client.subscription.controller(), Refused::rate);
         return;
     }
-    for (std::uint32_t i = 0; i < asked; ++i)
+    const std::uint32_t refused = client.subscription.requests().take(wanted, models_);
+    for (std::uint32_t i = 0; i < refused; ++i)
     {
-        const tactus_v5_PieceName& name = wanted.pieces._buffer[i];
-        const ContentKey key{static_cast<ContentKind>(name.kind), name.number};
-        if (name.model >= models_.size() || !models_[name.model].has(key))
-        {
-            refuse(client.subscription.controller(), Refused::request);
-            continue;
-        }
-        client.subscription.request({name.model, key}, wanted.generation);
+        refuse(client.subscription.controller(), Refused::request);
     }
 }
 

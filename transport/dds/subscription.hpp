@@ -5,7 +5,7 @@
 #include "transport/base/refusal.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/model_pieces.hpp"
-#include "transport/dds/request_queue.hpp"
+#include "transport/dds/piece_requests.hpp"
 #include "transport/dds/topics.hpp"
 #include "transport/dds/writer_lanes.hpp"
 #include "transport/log.hpp"
@@ -22,26 +22,11 @@
 namespace tactus::dds
 {
 
-/// Memory for building samples, shared by all subscriptions of a server.
-struct PieceBuffers
-{
-    std::vector<std::byte> payload;
-    std::vector<std::byte> piece;
-};
-
 /// State of one controller on the server: requests, credit, and writers in a partition of its own,
 /// so that no controller waits for another.
 class Subscription
 {
 public:
-    /// Credit as stated in a request (CreditWindow); all numbers are totals of pieces.
-    struct Credit
-    {
-        std::uint64_t seen{0};
-        std::uint64_t granted{0};
-        std::uint64_t received{0};
-    };
-
     /// The number of sent pieces starts at `seen` of the first request, so that a controller that
     /// was taken for gone continues its count.
     [[nodiscard]] static Result<Subscription, Refusal> create(const Domain& domain,
@@ -52,27 +37,16 @@ public:
     [[nodiscard]] const ControllerId& controller() const noexcept { return controller_; }
     [[nodiscard]] const std::string& controller_name() const noexcept { return controller_name_; }
 
-    /// Queues a request; the piece must exist.
-    void request(const ServerPiece& piece, std::uint32_t generation)
-    {
-        requests_.add(piece, generation);
-    }
-    /// Updates the credit from a request. Requests may arrive out of order, so values never
-    /// decrease. `seen` is limited to the number sent, and `granted` to kCreditPieces beyond
-    /// `seen`.
-    void set_credit(const Credit& credit) noexcept;
+    /// Requests and credit, for samples of this controller.
+    [[nodiscard]] PieceRequests& requests() noexcept { return requests_; }
     /// Replaces the writers if the controller reports for 300 ms that pieces did not arrive: a
     /// forged packet in a writer's name makes readers ignore the writer. Returns the owner of the
     /// old writers; null if nothing was replaced. Limited by a Backoff.
     [[nodiscard]] std::shared_ptr<void> try_heal(Backoff::Clock::time_point now);
 
     /// True if there are requests and credit. send_one() also needs the controller's reader.
-    [[nodiscard]] bool has_work() const noexcept
-    {
-        return !requests_.empty() && sent_ < credit_.granted;
-    }
-    /// Sends one sample with as many requested pieces as credit and payload allow. Unreadable
-    /// pieces are skipped and logged. False if nothing was sent.
+    [[nodiscard]] bool has_work() const noexcept { return requests_.has_work(); }
+    /// Sends one sample of PieceRequests::fill(). False if nothing was sent.
     bool send_one(std::uint64_t server_epoch, std::span<const ModelPieces> models,
                   PieceBuffers& room, RateLimitedLog& log);
     /// Tells the controller that it may read the objects. False if its reader is not present or the
@@ -81,29 +55,22 @@ public:
 
     [[nodiscard]] std::uint64_t pieces_sent() const noexcept { return pieces_sent_; }
     [[nodiscard]] std::uint64_t bytes_sent() const noexcept { return bytes_sent_; }
-    /// Number of pieces that wait to be sent.
-    [[nodiscard]] std::size_t requests() const noexcept { return requests_.size(); }
 
 private:
-    explicit Subscription(WriterLanes writers)
-        : writers_(std::move(writers)), requests_(kMaxWaiting)
+    Subscription(WriterLanes writers, std::uint64_t seen)
+        : writers_(std::move(writers)), requests_(seen)
     {
     }
 
-    [[nodiscard]] std::uint64_t fill(std::span<const ModelPieces> models, PieceBuffers& room,
-                                     RateLimitedLog& log);
     bool write(std::uint64_t server_epoch, std::uint64_t pieces, bool lets_in,
                std::vector<std::byte>& payload);
 
     ControllerId controller_{};
     std::string controller_name_;
     WriterLanes writers_;
-    RequestQueue requests_;
-    Credit credit_;
-    std::uint64_t lost_{0};              ///< Sent pieces that did not arrive, as last reported.
-    std::uint64_t given_up_{UINT64_MAX}; ///< Value of `lost_` up to which writers are not replaced.
+    PieceRequests requests_;
+    std::uint64_t given_up_{UINT64_MAX}; ///< Lost pieces up to which writers are not replaced.
     Backoff::Clock::time_point overdue_since_{};
-    std::uint64_t sent_{0};
     std::uint64_t pieces_sent_{0};
     std::uint64_t bytes_sent_{0};
 };

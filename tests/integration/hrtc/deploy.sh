@@ -25,6 +25,7 @@ grep -qx 'duration=86400' options.toml || fault 'the example is not read'
 for unit in hrtc spm_publish spm_view; do
     service=$scratch/root/lib/systemd/system/$unit.service
     ! grep '@[A-Z_]*@' "$service" || fault "a line of $unit.service is not configured"
+    grep -q '^ExecStart=.* [$]KEYS$' "$service" || fault "$unit.service takes no keys"
     [[ -s $scratch/root/share/man/man1/$unit.1 ]] || fault "no page of $unit in the manual"
     if command -v systemd-analyze >/dev/null; then
         sed -e "s|^ExecStart=[^ ]*|ExecStart=$installed/$unit|" "$service" >"$unit.service"

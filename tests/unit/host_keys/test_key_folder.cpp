@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -164,19 +165,35 @@ TEST_F(KeysOfASite, are_in_an_archive_with_the_right_modes_and_owner)
         found.insert(fmt::format("{} {} {}", mode, owner, name));
     }
     EXPECT_EQ(::pclose(list), 0);
-    std::set<std::string> expected{"drwxr-xr-x 0/0 keys/", "-rw-r--r-- 0/0 keys/credentials.conf"};
-    const std::string drop_in = text_in(keys_of("hand-1") / keys::kCredentialsFile);
+    std::set<std::string> expected{"drwxr-xr-x 0/0 tactus/keys/hand-1/",
+                                   "-rw-r--r-- 0/0 systemd/system/hrtc.service.d/keys.conf"};
     for (const char* file : dds::kKeyFiles)
     {
         expected.insert(
-            fmt::format("{} 0/0 keys/{}",
+            fmt::format("{} 0/0 tactus/keys/hand-1/{}",
                         file == std::string(dds::kKeyFile) ? "-rw-------" : "-rw-r--r--", file));
     }
     EXPECT_EQ(found, expected);
-    for (const char* file : dds::kKeyFiles) // What the service gets are the keys.
+}
+
+TEST_F(KeysOfASite, are_given_to_the_service_of_their_role)
+{
+    make(now);
+    const std::map<std::string, std::string> services{
+        {"station", "spm_publish"}, {"hand-1", "hrtc"}, {"hand-2", "hrtc"}, {"desk", "spm_view"}};
+    for (const auto& [who, service] : services)
     {
-        const std::string line = fmt::format("\nLoadCredential={0}:/etc/tactus/keys/{0}\n", file);
-        EXPECT_NE(drop_in.find(line), std::string::npos) << line;
+        const std::string archive = text_in(keys_of(who).string() + ".tar");
+        EXPECT_NE(archive.find(fmt::format("systemd/system/{}.service.d/keys.conf", service)),
+                  std::string::npos);
+        EXPECT_NE(archive.find("\nEnvironment=\"KEYS=--security %d --require-security\"\n"),
+                  std::string::npos);
+        for (const char* file : dds::kKeyFiles)
+        {
+            const std::string line =
+                fmt::format("\nLoadCredential={1}:/etc/tactus/keys/{0}/{1}\n", who, file);
+            EXPECT_NE(archive.find(line), std::string::npos) << line;
+        }
     }
 }
 

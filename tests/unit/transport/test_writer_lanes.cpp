@@ -111,9 +111,8 @@ TEST_F(Lanes, join_one_by_one_and_take_turns_and_everything_comes)
 
 TEST_F(Lanes, an_older_request_that_comes_late_takes_no_credit_back)
 {
-    const ControllerId controller{1, 2, 3};
-    auto sut = Subscription::create(*server_, controller, "controller", 0).value();
-    sut.request({0, {ContentKind::chunk, 0}}, 1);
+    PieceRequests sut(0);
+    sut.add({0, {ContentKind::chunk, 0}}, 1);
     EXPECT_FALSE(sut.has_work()); // Nothing is granted yet.
 
     sut.set_credit({0, 128, 0});
@@ -174,14 +173,14 @@ TEST_F(Lanes, are_renewed_where_pieces_stay_away_for_300_ms)
 {
     auto sut = Subscription::create(*server_, ControllerId{1}, "controller", 100).value();
     const auto start = Backoff::Clock::now();
-    sut.set_credit({100, 228, 80}); // Older than samples sent since.
+    sut.requests().set_credit({100, 228, 80}); // Older than samples sent since.
     EXPECT_EQ(sut.try_heal(start), nullptr);
     EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(2)), nullptr);
-    sut.set_credit({100, 228, 70});
+    sut.requests().set_credit({100, 228, 70});
     EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'200)), nullptr);
-    sut.set_credit({100, 228, 80}); // They arrived late.
+    sut.requests().set_credit({100, 228, 80}); // They arrived late.
     EXPECT_EQ(sut.try_heal(start + std::chrono::milliseconds(2'400)), nullptr);
-    sut.set_credit({100, 228, 70});
+    sut.requests().set_credit({100, 228, 70});
     EXPECT_NE(sut.try_heal(start + std::chrono::milliseconds(2'800)), nullptr);
     EXPECT_EQ(sut.try_heal(start + std::chrono::seconds(10)), nullptr) << "these were given up";
 }
