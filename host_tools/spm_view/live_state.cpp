@@ -5,8 +5,6 @@
 #include "transport/content_hash.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <ranges>
 #include <utility>
 
 namespace tactus::view
@@ -66,8 +64,10 @@ void LiveState::publish(const std::vector<dds::WatchedController>& told)
         keep(controller);
         LiveController& live = next->controllers.emplace_back();
         live.told = controller;
-        std::ranges::copy(std::views::values(kept_[controller.id].objects),
-                          std::back_inserter(live.objects));
+        for (const auto& [number, object] : kept_[controller.id].objects)
+        {
+            live.objects.push_back(object);
+        }
     }
     snapshot_ = std::move(next);
     news_.notify_all();
