@@ -283,12 +283,11 @@ readonly pages_moved_before
 
 # deadline_test ARGUMENT...: hrtc deadline-test with its report in run.json and its output in
 # test.log; its exit code, which agrees with the report, is in $ended_with. It is 0 unless the
-# machine was too busy three times. No try may contain allocations. Frames of too much work are an
-# own fault too, but a virtual machine's host, which stops a frame, adds to its processor time: not
-# in each of three tries. Without locked memory and SCHED_FIFO the loop has overruns of its own, and
-# a sanitizer adds more.
+# machine was too busy three times. No try may contain actions of the loop that a machine cannot
+# cause. Without locked memory and SCHED_FIFO the loop has overruns of its own, and a sanitizer adds
+# more.
 deadline_test() {
-    local try worked_too_long=0
+    local try
     for try in 1 2 3; do
         ended_with=0
         rm -f run.json
@@ -298,13 +297,11 @@ deadline_test() {
         check run.json passed == $((ended_with == 0))
         [[ -z "$sanitizer" ]] && is_realtime run.json || return 0
         check run.json self_check.injected == 20 self_check.flagged == 20 \
-            deadline.cycles.allocation == 0
+            deadline.cycles.allocation+deadline.cycles.over_work == 0 \
+            deadline.cycles.gave_way == 0
         ((ended_with != 0)) || return 0
         echo "not passed, try $try"
-        "$check_report" run.json deadline.cycles.over_work+deadline.cycles.gave_way == 0 \
-            >/dev/null || ((++worked_too_long))
     done
-    ((worked_too_long < 3)) || fault 'each run has cycles of too much work'
 }
 
 # is_realtime FILE: true if that run had SCHED_FIFO and locked memory.
