@@ -27,20 +27,6 @@ ClosestPoints find_closest(const Segment& segment, const Triangle& triangle) noe
     return is_met ? meeting_at(nearest.on_shape, nearest.shape_feature, nearest.feature) : nearest;
 }
 
-} // namespace
-
-ClosestPoints closest_points(const Segment& segment, const Triangle& triangle) noexcept
-{
-    return solve_in_range(
-        std::array{segment.from, segment.to, triangle[0], triangle[1], triangle[2]},
-        [](const auto& points) noexcept {
-            return find_closest({points[0], points[1]}, {points[2], points[3], points[4]});
-        });
-}
-
-namespace
-{
-
 /// Returns a shared point of two triangles that meet.
 ClosestPoints find_shared_point(const Triangle& first, const Triangle& second) noexcept
 {
@@ -72,6 +58,15 @@ ClosestPoints find_closest(const Triangle& first, const Triangle& second, DoMeet
 }
 
 } // namespace
+
+ClosestPoints closest_points(const Segment& segment, const Triangle& triangle) noexcept
+{
+    return solve_in_range(
+        std::array{segment.from, segment.to, triangle[0], triangle[1], triangle[2]},
+        [](const auto& points) noexcept {
+            return find_closest({points[0], points[1]}, {points[2], points[3], points[4]});
+        });
+}
 
 ClosestPoints closest_points(const Triangle& first, const Triangle& second) noexcept
 {

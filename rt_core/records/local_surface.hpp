@@ -29,7 +29,7 @@ struct LocalTriangle
 enum class AnswerKind : std::uint8_t
 {
     /// L and U come from exact faces and differ only by the kernel's error law and, with a
-    /// tolerance, by a millionth of a quantum within which faces count as equally near.
+    /// tolerance, by 2^-20 quanta within which faces count as equally near.
     exact,
     /// No contact: L is above the tool's reach, proven without refining.
     separated,
