@@ -950,16 +950,6 @@ TEST(EditsFound, a_distance_without_an_upper_bound_is_still_found)
     EXPECT_TRUE(figures.truth.holds()) << figures.truth.summary();
 }
 
-/// A rigid tool with a tolerance leaves faces unmeasured; with small pools that change of the
-/// answer was larger than the tolerance told. Found with seed 104 of long runs.
-TEST(EditsFound, what_was_not_measured_is_in_the_tolerance)
-{
-    const TestModel& model = edited_model(7); // Bumpy sphere.
-    const EditFigures figures = run_edit_trial(
-        {model, hardship_named(model, "small-pools"), TrialTool::box, 0.001, 128, 800});
-    EXPECT_TRUE(figures.truth.holds()) << figures.truth.summary();
-}
-
 TEST(EditsAgain, give_the_same_bits)
 {
     for (const char* name : {"usual", "lossy-link", "small-pools"})

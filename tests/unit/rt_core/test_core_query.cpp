@@ -403,6 +403,37 @@ INSTANTIATE_TEST_SUITE_P(Tolerances, FlatCoreQuery,
                                          std::pair<ErrorCode, ErrorCode>{0, 12},
                                          std::pair<ErrorCode, ErrorCode>{8, 12}));
 
+TEST(CoreQuery, the_tolerance_tells_of_faces_that_were_not_measured)
+{
+    constexpr ErrorCode kTolerance = 60;
+    Random random(67);
+    TreeRig rig({800, 800, 800});
+    fill_flat(rig, 20, 0x1p-4F, 0);
+    const auto faces = rig.present();
+    const double little = little_of(kTolerance);
+    QueryMemory memory;
+    int unmeasured = 0;
+    for (int query = 0; query < 300; ++query)
+    {
+        // So little tilted that few of the faces below need to be measured.
+        const Vec3 axis(random.between(-1.0, 1.0), random.between(-1.0, 1.0), 0.0);
+        const Mat3 tilt = Eigen::AngleAxisd(random.between(0.0, 2.0) * little, axis.normalized())
+                              .toRotationMatrix();
+        const Vec3 middle{random.between(0.5, 0.7), random.between(0.5, 0.7), 0.35};
+        const PlacedCore core(flat_core(query % 3), {tilt, middle, 1.0});
+        const CoreTruth truth(faces, core, 0.1, kTolerance);
+
+        const CoreAnswer asked = ask(*rig.sut, core, 0.1, memory, 1'000'000, 1'000'000, kTolerance);
+
+        ASSERT_TRUE(is_known(asked.answer().kind));
+        ASSERT_GE(asked.answer().lower_m,
+                  truth.nearest_distance - asked.answer().tolerated_m - 1e-12);
+        ASSERT_LE(asked.answer().tolerated_m, little);
+        unmeasured += truth.nearest_distance - asked.answer().lower_m > 1e-9 ? 1 : 0;
+    }
+    EXPECT_GT(unmeasured, 20);
+}
+
 TEST(CoreQuery, a_point_gets_the_answer_of_a_point)
 {
     Random random(63);

@@ -357,7 +357,7 @@ TEST_F(DdsTelemetry, keeps_the_last_state_while_samples_have_none)
     ASSERT_TRUE(polled_until([&] { return !seen().empty(); }, [&] { controller.write(); }));
     controller.write();
     const std::uint64_t with_state = controller.writer->sent();
-    for (int i = 0; i < 10; ++i) // As many as between two states, and without a poll.
+    for (int i = 0; i < 10; ++i) // Ten samples without a state lie between two states.
     {
         controller.writer->write(controller.telemetry);
     }

@@ -87,7 +87,7 @@ TEST(LocalEdits, a_model_whose_edit_a_frame_refused_gets_no_more)
     sut.step();
     EditMailbox& mailbox = *sut.ports().mailbox;
     ASSERT_EQ(mailbox.edits().size(), 1U);
-    mailbox.done({});                 // As of a frame that did not make the edit.
+    mailbox.done({});                 // A frame that did not make the edit tells this.
     EXPECT_TRUE(sut.change(0, dent)); // Not known yet.
     sut.step();
     const auto late = sut.change(0, dent);
