@@ -87,12 +87,13 @@ CycleFlag DeadlineAccount::flags_of(const CycleMeasures& measures, bool over_wor
 {
     const ThreadUsage& usage = measures.usage;
     const Cycle& cycle = measures.cycle;
+    const std::int64_t faults = usage.minor_faults + usage.major_faults;
     const bool is_missed =
         measures.lateness_of_end > period_ || std::int64_t{cycle.periods} - 1 > own_losses_;
     const Duration computed = is_missed ? measures.cpu + measures.beside_cpu : measures.cpu;
-    return when(usage.minor_faults + usage.major_faults > 0, CycleFlag::page_fault) |
+    return when(faults > 0, CycleFlag::page_fault) |
            when(measures.allocations > 0, CycleFlag::allocation) |
-           when(usage.voluntary_switches > 0 && !measures.was_stopped, CycleFlag::gave_way) |
+           when(usage.voluntary_switches > faults && !measures.was_stopped, CycleFlag::gave_way) |
            when(measures.calls.in_frame > calls.in_frame, CycleFlag::system_call) |
            when(over_work, CycleFlag::over_work) |
            when(computed > cpu_limit_, CycleFlag::over_cpu) |

@@ -87,6 +87,24 @@ TEST(DeadlineAccount, blames_the_loop_for_each_thing_that_it_must_not_do)
     EXPECT_EQ(sut.cycles_with(CycleFlag::over_work), 1U);
 }
 
+/// A page fault may wait for a page that the kernel moves, once: the fault is the event, not the
+/// wait.
+TEST(DeadlineAccount, the_wait_of_a_page_fault_is_no_event_of_its_own)
+{
+    CycleMeasures measures = clean_cycle();
+    measures.usage.minor_faults = 1;
+    measures.usage.major_faults = 1;
+    for (const std::int64_t switches : {0, 1, 2, 3})
+    {
+        measures.usage.voluntary_switches = switches;
+        DeadlineAccount sut(kPeriod);
+        sut.add(0, measures, kWork, false);
+        EXPECT_EQ(sut.overruns, 1U);
+        EXPECT_EQ(sut.cycles_with(CycleFlag::page_fault), 1U);
+        EXPECT_EQ(sut.cycles_with(CycleFlag::gave_way), switches > 2 ? 1U : 0U) << switches;
+    }
+}
+
 TEST(DeadlineAccount, counts_a_system_call_in_the_cycle_that_made_it)
 {
     DeadlineAccount sut(kPeriod);
