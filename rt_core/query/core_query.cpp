@@ -319,8 +319,10 @@ private:
         largest_tolerated_ = std::max(largest_tolerated_, face.error);
         if (lower <= reach_)
         {
-            triangles_.add({prim, block_triangle(tree_.block(face.block), face.lane)},
-                           std::max(0.0, lower));
+            if (LocalTriangle* const place = triangles_.add(std::max(0.0, lower)))
+            {
+                *place = {prim, block_triangle(tree_.block(face.block), face.lane)};
+            }
         }
         // The face does not make the answer exact if a nearer exact face may have been left out.
         const bool is_exact = !is_left_out || lower >= nearest_.distance - kTied * quantum_;

@@ -30,10 +30,10 @@ public:
         surface.truncated = false;
     }
 
-    /// Adds a triangle if it is near enough; `distance_m` >= 0 (asserted) is a lower bound on its
-    /// distance. Takes a few nanoseconds, or a pass over the list each time that the surface is
-    /// full.
-    void add(const LocalTriangle& triangle, double distance_m) noexcept
+    /// Adds a triangle, which the caller writes to the returned place, if it is near enough;
+    /// otherwise returns null. `distance_m` >= 0 (asserted) is a lower bound on its distance. Takes
+    /// a few nanoseconds, or a pass over the list each time that the surface is full.
+    [[nodiscard]] LocalTriangle* add(double distance_m) noexcept
     {
         TACTUS_ASSERT(distance_m >= 0.0);
         if (surface_.count == surface_.triangles.size() && distance_m < dropped_m_)
@@ -44,11 +44,10 @@ public:
         {
             surface_.truncated = true;
             dropped_m_ = std::min(dropped_m_, distance_m);
-            return;
+            return nullptr;
         }
         surface_.distances_m[surface_.count] = distance_m;
-        surface_.triangles[surface_.count] = triangle;
-        ++surface_.count;
+        return &surface_.triangles[surface_.count++];
     }
 
     /// Lower bound on the distance of dropped triangles; infinite if none was dropped.

@@ -316,12 +316,12 @@ private:
         tree_.kernels().test_blocks(&tree_.block(0), probe_, floor_, limit_, batch);
         for (std::uint32_t i = 0; i < batch.count; ++i)
         {
+            const std::uint32_t block = TreeRef{batch.blocks[i]}.index();
             for (std::uint32_t near = batch.near[i]; near != 0; near &= near - 1)
             {
                 const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
                 const float lower_sq = std::max(batch.lower_sq[i][lane], 0.0F);
-                add_surface(
-                    {TreeRef{batch.blocks[i]}.index(), lane, std::sqrt(lower_sq) - probe_.slack});
+                add_surface({block, lane, std::sqrt(lower_sq) - probe_.slack}, 0);
             }
         }
         batch.count = 0;
@@ -351,7 +351,7 @@ private:
         for (; near != 0; near &= near - 1)
         {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(near));
-            add_surface({index, lane, bounds.lower[lane]});
+            add_surface({index, lane, bounds.lower[lane]}, tree_.side(index).errors[lane]);
         }
         return true;
     }
@@ -406,17 +406,19 @@ private:
                static_cast<double>(error);
     }
 
-    /// Adds a face that counts as the surface: it is exact or within the tolerance.
-    void add_surface(const Candidate& candidate) noexcept
+    /// Adds a face that counts as the surface: its error is 0 or within the tolerance.
+    void add_surface(const Candidate& candidate, ErrorCode error) noexcept
     {
         if (nearest_triangles_ && candidate.lower <= floor_)
         {
-            const ErrorCode error = error_of(candidate);
             largest_tolerated_ = std::max(largest_tolerated_, error);
-            nearest_triangles_->add(
-                {tree_.side(candidate.block).prims[candidate.lane],
-                 block_triangle(tree_.block(candidate.block), candidate.lane)},
-                std::max(0.0, to_metres(candidate.lower - error_in_quanta(error))));
+            const double lower_m =
+                std::max(0.0, to_metres(candidate.lower - error_in_quanta(error)));
+            if (LocalTriangle* const place = nearest_triangles_->add(lower_m))
+            {
+                *place = {tree_.side(candidate.block).prims[candidate.lane],
+                          block_triangle(tree_.block(candidate.block), candidate.lane)};
+            }
             if (nearest_triangles_->dropped_m() < kInfinity)
             {
                 floor_ =
