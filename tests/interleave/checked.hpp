@@ -31,9 +31,6 @@ public:
     }
     CheckedAtomic(const CheckedAtomic&) = delete;
     CheckedAtomic& operator=(const CheckedAtomic&) = delete;
-    CheckedAtomic(CheckedAtomic&&) = delete;
-    CheckedAtomic& operator=(CheckedAtomic&&) = delete;
-    ~CheckedAtomic() = default;
 
     [[nodiscard]] T load(std::memory_order order) const
     {
@@ -56,9 +53,6 @@ public:
     CheckedSlot() = default;
     CheckedSlot(const CheckedSlot&) = delete;
     CheckedSlot& operator=(const CheckedSlot&) = delete;
-    CheckedSlot(CheckedSlot&&) = delete;
-    CheckedSlot& operator=(CheckedSlot&&) = delete;
-    ~CheckedSlot() = default;
 
     CheckedSlot& operator=(const T& value)
     {

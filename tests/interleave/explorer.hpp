@@ -25,8 +25,6 @@ public:
     Program() = default;
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
-    Program(Program&&) = delete;
-    Program& operator=(Program&&) = delete;
     virtual ~Program() = default;
 
     /// Threads, at most kMaxThreads.
@@ -60,8 +58,6 @@ public:
     Execution(Choices& choices, std::span<const Fault> faults, std::span<Fiber> fibers);
     Execution(const Execution&) = delete;
     Execution& operator=(const Execution&) = delete;
-    Execution(Execution&&) = delete;
-    Execution& operator=(Execution&&) = delete;
     ~Execution();
 
     void run(const MakeProgram& make);

@@ -18,9 +18,6 @@ public:
     Fiber();
     Fiber(const Fiber&) = delete;
     Fiber& operator=(const Fiber&) = delete;
-    Fiber(Fiber&&) = delete;
-    Fiber& operator=(Fiber&&) = delete;
-    ~Fiber() = default;
 
     /// Sets the `body` of the next resume(), which must not throw.
     void start(std::function<void()> body);

@@ -172,27 +172,15 @@ TEST_F(PageLife, of_a_model_whose_pages_need_each_other)
     EXPECT_GT(std::popcount(truth_.linkable[1]), 0) << "some don't";
 }
 
-TEST_F(PageLife, is_sound_from_the_start)
+TEST_F(PageLife, is_sound_after_every_verb_wherever_it_begins)
 {
     explore("every verb, from the start", {}, 4,
             {"delivered", "asked again", "damaged", "unrequested"});
-}
-
-TEST_F(PageLife, is_sound_with_the_index_page_here)
-{
-    explore("every verb, the index page here", std::span(kAllHere).first(kIndexHere), 4,
-            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unrequested"});
-}
-
-TEST_F(PageLife, is_sound_with_one_page_here_and_one_on_its_way)
-{
+    const auto linking = {"evicted", "linked after arrival", "linked after eviction", "damaged",
+                          "unrequested"};
+    explore("every verb, the index page here", std::span(kAllHere).first(kIndexHere), 4, linking);
     explore("every verb, one page here and one on its way", std::span(kAllHere).first(kOneOnItsWay),
-            4,
-            {"evicted", "linked after arrival", "linked after eviction", "damaged", "unrequested"});
-}
-
-TEST_F(PageLife, is_sound_with_every_slot_taken)
-{
+            4, linking);
     explore("every verb, every slot taken", kAllHere, 4, {"evicted", "linked after arrival"});
 }
 

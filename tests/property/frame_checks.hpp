@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace tactus::test
 {
@@ -18,6 +19,18 @@ inline void expect_all_budgets_kept(const FrameOutput& output, const Budgets& bu
     EXPECT_EQ(broken_budget(output, budgets).value_or(""), "");
 }
 
+/// Test of each of some small models with random numbers of its own; a failure names both.
+template <std::uint64_t kFirstSeed>
+class EachModel : public testing::TestWithParam<std::size_t>
+{
+protected:
+    const TestModel& model_ = small_model(GetParam());
+    const std::uint64_t seed_ = seed_of(kFirstSeed + GetParam());
+    Random random_ = Random::seeded(seed_);
+
+private:
+    testing::ScopedTrace trace_{__FILE__, __LINE__, model_.name + " seed " + std::to_string(seed_)};
+};
 /// True if L <= d <= U against every face of the source, and an open answer has a named reason.
 [[nodiscard]] inline testing::AssertionResult answer_is_sound(const TestModel& model,
                                                               const FrameOutput& output)

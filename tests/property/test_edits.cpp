@@ -59,15 +59,8 @@ constexpr std::array<const char*, 6> kTrialToolNames{"sphere", "measuring", "cap
 
 const TestModel& mesh_of_tool()
 {
-    TriangleMesh mesh = make_shape(Shape::bumpy_sphere, 500).value();
-    for (auto& vertex : mesh.positions)
-    {
-        for (double& coordinate : vertex)
-        {
-            coordinate /= 12.0;
-        }
-    }
-    return test_model("edits-tool", mesh, 100);
+    return test_model("edits-tool",
+                      scaled_mesh(make_shape(Shape::bumpy_sphere, 500).value(), 1.0 / 12.0), 100);
 }
 
 SolidCore solid_of(TrialTool tool)
@@ -864,22 +857,31 @@ protected:
                     static_cast<unsigned long long>(figures.merges));
         EXPECT_TRUE(figures.truth.holds()) << figures.truth.summary();
     }
+
+    /// Trials of every model with these tools.
+    static EditFigures run_all(std::initializer_list<TrialTool> tools, std::uint64_t first_seed,
+                               double tolerance_n, std::uint32_t frames)
+    {
+        EditFigures all;
+        for (std::size_t i = 0; i < kEditedModels; ++i)
+        {
+            const TestModel& model = edited_model(i);
+            for (const TrialTool tool : tools)
+            {
+                const std::uint64_t seed =
+                    seed_of(first_seed) + tools.size() * i + static_cast<std::uint64_t>(tool);
+                all.add(run_edit_trial({model, hardship_named(model, GetParam()), tool, tolerance_n,
+                                        seed, trial_length(frames)}));
+            }
+        }
+        expect_true(all);
+        return all;
+    }
 };
 
 TEST_P(Edits, are_answered_truly_for_spheres_under_this_hardship)
 {
-    EditFigures all;
-    for (std::size_t i = 0; i < kEditedModels; ++i)
-    {
-        const TestModel& model = edited_model(i);
-        for (const TrialTool tool : {TrialTool::sphere, TrialTool::measuring})
-        {
-            const std::uint64_t seed = seed_of(6'100) + 2 * i + static_cast<std::uint64_t>(tool);
-            all.add(run_edit_trial(
-                {model, hardship_named(model, GetParam()), tool, 0.0, seed, trial_length(1'000)}));
-        }
-    }
-    expect_true(all);
+    const EditFigures all = run_all({TrialTool::sphere, TrialTool::measuring}, 6'100, 0.0, 1'000);
     EXPECT_GT(all.edits, kEditedModels * trial_length(1'000) / 25);
     EXPECT_GT(all.refused, 10U);
     if (std::string_view(GetParam()) != "static" && std::string_view(GetParam()) != "in-the-tool")
@@ -898,19 +900,8 @@ using EditsOfRigidTools = Edits;
 
 TEST_P(EditsOfRigidTools, are_answered_truly_for_every_core)
 {
-    EditFigures all;
-    for (std::size_t i = 0; i < kEditedModels; ++i)
-    {
-        const TestModel& model = edited_model(i);
-        for (const TrialTool tool :
-             {TrialTool::capsule, TrialTool::box, TrialTool::hull, TrialTool::mesh})
-        {
-            const std::uint64_t seed = seed_of(6'200) + 4 * i + static_cast<std::uint64_t>(tool);
-            all.add(run_edit_trial(
-                {model, hardship_named(model, GetParam()), tool, 0.0, seed, trial_length(600)}));
-        }
-    }
-    expect_true(all);
+    const EditFigures all = run_all(
+        {TrialTool::capsule, TrialTool::box, TrialTool::hull, TrialTool::mesh}, 6'200, 0.0, 600);
     EXPECT_GT(all.edits, 100U);
 }
 
@@ -922,18 +913,8 @@ using EditsWithinATolerance = Edits;
 /// Coarse faces count as the surface only where no edit touched what they stand for.
 TEST_P(EditsWithinATolerance, are_answered_within_it)
 {
-    EditFigures all;
-    for (std::size_t i = 0; i < kEditedModels; ++i)
-    {
-        const TestModel& model = edited_model(i);
-        for (const TrialTool tool : {TrialTool::sphere, TrialTool::box, TrialTool::mesh})
-        {
-            const std::uint64_t seed = seed_of(6'300) + 3 * i + static_cast<std::uint64_t>(tool);
-            all.add(run_edit_trial(
-                {model, hardship_named(model, GetParam()), tool, 0.001, seed, trial_length(800)}));
-        }
-    }
-    expect_true(all);
+    const EditFigures all =
+        run_all({TrialTool::sphere, TrialTool::box, TrialTool::mesh}, 6'300, 0.001, 800);
     EXPECT_GT(all.tolerated, 0U);
 }
 

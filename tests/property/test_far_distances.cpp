@@ -57,17 +57,10 @@ void check(const PairOutput& pair, double truth_m, double slack_m)
     }
 }
 
-class FarDistances : public testing::TestWithParam<std::size_t>
-{
-protected:
-    const TestModel& model_ = small_model(GetParam());
-    const std::uint64_t seed_ = seed_of(5'600 + GetParam());
-    Random random_ = Random::seeded(seed_);
-};
+using FarDistances = EachModel<5'600>;
 
 TEST_P(FarDistances, of_a_point_become_the_source_meshs_in_bounded_frames)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     RigOptions options;
     options.tools = {measuring_tool(0.005 * model_.diagonal_m)};
     options.faults.loss = 0.1;
@@ -96,7 +89,6 @@ TEST_P(FarDistances, of_a_point_become_the_source_meshs_in_bounded_frames)
 
 TEST_P(FarDistances, of_a_tool_that_moves_hold_the_truth_in_every_frame)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     RigOptions options;
     options.tools = {measuring_tool(0.002 * model_.diagonal_m)};
     FrameRig sut(model_, options);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 
-/// I1 full refinement is the source, I2 undoing returns the base state, I3 every cut is manifold,
-/// I10 the finest corner: the forest's invariants on whole small models with every chunk loaded.
-/// The validators also check the cuts.
+/// I1 full refinement is the source, I2 undoing returns the base state, I3 every cut is manifold:
+/// the forest's invariants on whole small models with every chunk loaded. The validators also check
+/// the cuts, and I10 the finest corner.
 
 #include "rt_core/forest/validate_forest.hpp"
 #include "rt_core/query/surface_query.hpp"
+#include "tests/property/frame_checks.hpp"
 #include "tests/shared/loaded_forest.hpp"
 #include "tests/shared/manifold.hpp"
 #include "tests/shared/owned_surface.hpp"
@@ -50,19 +51,7 @@ std::string manifold_fault_of(LoadedForest& sut)
     return manifold_fault(faces);
 }
 
-class ForestProperties : public testing::TestWithParam<std::size_t>
-{
-protected:
-    const TestModel& model_ = small_model(GetParam());
-    std::uint64_t seed_ = seed_of(20'261'120 + GetParam());
-    Random random_ = Random::seeded(seed_);
-
-    void SetUp() override
-    {
-        RecordProperty("model", model_.name);
-        SCOPED_TRACE("seed " + std::to_string(seed_));
-    }
-};
+using ForestProperties = EachModel<20'261'120>;
 
 TEST_P(ForestProperties, full_refinement_in_any_order_is_the_source_corner_for_corner)
 {
@@ -76,9 +65,8 @@ TEST_P(ForestProperties, full_refinement_in_any_order_is_the_source_corner_for_c
         EXPECT_EQ(sut.forest().next_of(prim), kNextExact);
         EXPECT_EQ(sut.forest().error_of(prim), 0);
     }
-    EXPECT_EQ(faces.size(), model_.faces.size()) << model_.name << " seed " << seed_;
-    EXPECT_TRUE(canonical_set(faces) == canonical_set(model_.faces))
-        << model_.name << " seed " << seed_;
+    EXPECT_EQ(faces.size(), model_.faces.size());
+    EXPECT_TRUE(canonical_set(faces) == canonical_set(model_.faces));
 }
 
 TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_base_state)
@@ -99,102 +87,34 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
         }
         if (step % 1'000 == 999)
         {
-            ASSERT_EQ(manifold_fault_of(sut), "")
-                << model_.name << " seed " << seed_ << " step " << step;
+            ASSERT_EQ(manifold_fault_of(sut), "") << "step " << step;
             ASSERT_STREQ(text_of(find_flaw(sut.forest())).data(), "") << "step " << step;
         }
     }
     EXPECT_NE(sut.forest().state_hash(), base_hash);
     sut.merge_everything(random_);
-    EXPECT_EQ(sut.forest().refined_records(), 0U) << model_.name << " seed " << seed_;
+    EXPECT_EQ(sut.forest().refined_records(), 0U);
     EXPECT_EQ(sut.forest().active_faces(), base_faces);
-    EXPECT_EQ(sut.forest().state_hash(), base_hash) << model_.name << " seed " << seed_;
-}
-
-TEST_P(ForestProperties, the_same_cut_has_the_same_hash_however_it_was_reached)
-{
-    LoadedForest one(model_);
-    LoadedForest other(model_);
-    std::vector<RecordId> targets;
-    for (int i = 0; i < 200; ++i)
-    {
-        targets.push_back({static_cast<std::uint32_t>(random_.below(one.counts().records))});
-    }
-    const auto split_all = [](LoadedForest& sut, const std::vector<RecordId>& records)
-    {
-        for (const RecordId record : records)
-        {
-            if (!sut.pages().is_refined(record))
-            {
-                sut.split_with_dependencies(record);
-            }
-        }
-    };
-    split_all(one, targets);
-    std::reverse(targets.begin(), targets.end());
-    split_all(other, targets);
-    EXPECT_EQ(one.forest().state_hash(), other.forest().state_hash())
-        << model_.name << " seed " << seed_;
-}
-
-TEST_P(ForestProperties, the_record_that_last_changed_a_face_is_its_finest_corner)
-{
-    LoadedForest sut(model_);
-    for (int i = 0; i < 300; ++i)
-    {
-        const RecordId record = sut.random_record(random_);
-        if (!sut.pages().is_refined(record))
-        {
-            sut.split_with_dependencies(record);
-        }
-    }
-    for (const PrimId prim : sut.active())
-    {
-        const VertexForest::ActiveFace& face = sut.forest().face(prim);
-        std::uint32_t deepest = 0;
-        for (const VertexId corner : face.corners)
-        {
-            if (!sut.counts().is_base(corner))
-            {
-                const RecordId record = sut.counts().record_of(corner);
-                deepest = std::max<std::uint32_t>(deepest, sut.pages().resident(record).depth);
-            }
-        }
-        if (face.state.is_base())
-        {
-            EXPECT_EQ(deepest, 0U);
-            continue;
-        }
-        const RecordId owner = face.state.record();
-        EXPECT_EQ(sut.pages().resident(owner).depth, deepest);
-        EXPECT_TRUE(std::find(face.corners.begin(), face.corners.end(),
-                              sut.counts().vertex_of(owner)) != face.corners.end());
-    }
+    EXPECT_EQ(sut.forest().state_hash(), base_hash);
 }
 
 INSTANTIATE_TEST_SUITE_P(small_models, ForestProperties, testing::Range<std::size_t>(0, 6));
 
 /// I4: a certified sphere equals the full mesh.
-class CertifiedSphere : public testing::TestWithParam<std::size_t>
-{
-};
+using CertifiedSphere = EachModel<500>;
 
 TEST_P(CertifiedSphere, holds_the_same_faces_and_distances_as_the_full_mesh)
 {
-    const TestModel& model = small_model(GetParam());
-    const std::uint64_t seed = seed_of(500 + GetParam());
-    SCOPED_TRACE(model.name + " seed " + std::to_string(seed));
-    Random random = Random::seeded(seed);
-    FrameRig sut(model, {});
+    FrameRig sut(model_, {});
     OwnedSurface surface;
     int exact = 0;
     int answered = 0;
     for (int trial = 0; trial < 60; ++trial)
     {
-        const Face& face = model.faces[random.below(model.faces.size())];
-        const Vec3 place = to_vec3(face[1]) + random.in_cube(0.01 * model.diagonal_m);
+        const Face& face = model_.faces[random_.below(model_.faces.size())];
+        const Vec3 place = to_vec3(face[1]) + random_.in_cube(0.01 * model_.diagonal_m);
         sut.settle(place, {}, 400);
-        const double reach = random.between(0.008, 0.015) * model.diagonal_m;
+        const double reach = random_.between(0.008, 0.015) * model_.diagonal_m;
         const FrameOutput output = sut.step(place);
         const Vec3 center = output.tools[0].proxy_m;
         WalkBudget budget{100'000, 1'000'000};
@@ -207,8 +127,8 @@ TEST_P(CertifiedSphere, holds_the_same_faces_and_distances_as_the_full_mesh)
             found.insert(surface.triangles[i].corners_m);
         }
         // A face at the very edge of the sphere may be on either side by rounding.
-        const double slack = 1e-12 * model.diagonal_m;
-        for (const Face& source : model.faces)
+        const double slack = 1e-12 * model_.diagonal_m;
+        for (const Face& source : model_.faces)
         {
             if (brute_distance(center, source) < static_cast<long double>(radius - slack))
             {
@@ -227,7 +147,7 @@ TEST_P(CertifiedSphere, holds_the_same_faces_and_distances_as_the_full_mesh)
         {
             ++exact;
             ++answered;
-            const auto truth = static_cast<double>(brute_distance(center, model.faces));
+            const auto truth = static_cast<double>(brute_distance(center, model_.faces));
             EXPECT_NEAR(surface.answer.upper_m, truth, 1e-14) << "trial " << trial;
         }
     }

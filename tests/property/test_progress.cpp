@@ -68,17 +68,10 @@ Effort run_until_exact(const TestModel& model, const NearbyTool& tool, std::uint
     return run;
 }
 
-class Progress : public testing::TestWithParam<std::size_t>
-{
-protected:
-    const TestModel& model_ = small_model(GetParam());
-    const std::uint64_t seed_ = seed_of(700 + GetParam());
-    Random random_ = Random::seeded(seed_);
-};
+using Progress = EachModel<700>;
 
 TEST_P(Progress, one_split_a_frame_is_exact_after_as_many_frames_as_the_closure_has_records)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     std::uint32_t closure_max = 0;
     for (int trial = 0; trial < 6; ++trial)
     {
@@ -151,7 +144,6 @@ bool is_at_rest(const WorkCounters& work)
 
 TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thrash)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     int open = 0;
     for (std::uint32_t pages = 1; pages <= 12; ++pages)
     {
@@ -207,7 +199,6 @@ std::vector<std::uint32_t> held_records(const Model& model)
 
 TEST_P(Progress, a_record_of_a_pending_closure_is_neither_merged_nor_evicted)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     RigOptions options;
     options.tools = {{0.03 * model_.diagonal_m, 500.0, 8.0, 1.0}};
     FrameRig rig(model_, options);

@@ -320,13 +320,7 @@ TEST(RefineLimits, a_query_that_is_cut_knows_no_less_than_the_last_one)
     EXPECT_LE(pair.lower_m, before_m);
 }
 
-/// Frame of a tool with about nine tenths of a surface's capacity in reach of every object.
-FrameOutput fill_surfaces(FrameRig& rig, const Vec3& place)
-{
-    rig.settle(place, unlimited(kMaxSplitsPerFrame), 400);
-    return rig.step(place, unlimited(kMaxSplitsPerFrame));
-}
-
+/// A tool with about nine tenths of a surface's capacity in reach of every object.
 TEST(RefineLimits, a_frame_has_room_for_so_many_full_surfaces_and_says_when_it_needs_more)
 {
     const TestModel& model = WideModel::model();
@@ -345,7 +339,8 @@ TEST(RefineLimits, a_frame_has_room_for_so_many_full_surfaces_and_says_when_it_n
         options.tools[0].query_only = true;
         options.objects.assign(objects, ObjectSpec{ModelId{0}});
         FrameRig rig(model, options);
-        const FrameOutput output = fill_surfaces(rig, place);
+        rig.settle(place, unlimited(kMaxSplitsPerFrame), 400);
+        const FrameOutput output = rig.step(place, unlimited(kMaxSplitsPerFrame));
         EXPECT_EQ(has_fault(output.faults, FrameFault::surface_truncated),
                   objects > kLocalSurfaces);
         EXPECT_EQ(output.pairs[0].kind, AnswerKind::exact);
@@ -376,19 +371,6 @@ TEST(RefineLimits, a_tool_that_is_a_mesh_looks_at_so_many_times_the_budget_in_ea
     }
 }
 
-/// Greatest work of the frames.
-struct MostWork
-{
-    std::uint32_t nodes{0};
-    std::uint32_t triangles{0};
-
-    void add(const WorkCounters& work)
-    {
-        nodes = std::max(nodes, work.nodes_visited);
-        triangles = std::max(triangles, work.triangles_tested);
-    }
-};
-
 /// Both meshes coincide, so that any walk of the two could visit all of them. A tool that only
 /// renders force requests one meeting pair, and its neighbourhood.
 void refine_equals(const TestModel& model, bool wants_contacts, bool fills)
@@ -401,17 +383,19 @@ void refine_equals(const TestModel& model, bool wants_contacts, bool fills)
     FrameRig rig({&model, &model}, options);
     const Vec3 place_m(-model.origin_m[0], -model.origin_m[1], -model.origin_m[2]);
     const Budgets budgets;
-    MostWork most;
+    std::uint32_t nodes = 0; // Greatest work of a frame.
+    std::uint32_t triangles = 0;
     std::uint32_t splits = 0;
     for (int still = 0, frame = 0; still < 50; ++frame)
     {
         const FrameOutput output = rig.step(place_m, budgets);
-        most.add(output.work);
+        nodes = std::max(nodes, output.work.nodes_visited);
+        triangles = std::max(triangles, output.work.triangles_tested);
         splits += output.work.splits;
         still = output.work.splits == 0 ? still + 1 : 0;
         ASSERT_LT(frame, 3'000);
     }
-    std::printf("%u splits, most nodes %u, triangles %u\n", splits, most.nodes, most.triangles);
+    std::printf("%u splits, most nodes %u, triangles %u\n", splits, nodes, triangles);
     const PairOutput pair = rig.step(place_m, budgets).pairs[0];
     EXPECT_EQ(pair.kind, AnswerKind::exact);
     EXPECT_LT(pair.upper_m, 1e-12);
@@ -420,8 +404,8 @@ void refine_equals(const TestModel& model, bool wants_contacts, bool fills)
     const std::uint32_t all = 2 * rig.model().header.counts().records;
     EXPECT_EQ(splits >= all, wants_contacts || fills);
     EXPECT_EQ(splits < all / 10, !wants_contacts && !fills);
-    EXPECT_LE(most.nodes, 4 * budgets.nodes);
-    EXPECT_LE(most.triangles, 4 * budgets.triangles);
+    EXPECT_LE(nodes, 4 * budgets.nodes);
+    EXPECT_LE(triangles, 4 * budgets.triangles);
 }
 
 TEST(RefineLimits, two_equal_meshes_in_one_place_are_refined_by_a_little_work_a_frame)

@@ -234,15 +234,8 @@ TEST_F(RigidRest, a_cylinder_on_a_cylinder)
 
 TEST_F(RigidRest, a_box_a_hull_and_a_mesh_on_bumps_and_on_teeth)
 {
-    TriangleMesh sphere = make_uv_sphere(8, 10).value();
-    for (auto& corner : sphere.positions)
-    {
-        for (double& coordinate_m : corner)
-        {
-            coordinate_m *= 0.2; // Share of the 10 mm.
-        }
-    }
-    const TestModel& probe = test_model("rest-tool", sphere, 60);
+    const TestModel& probe =
+        test_model("rest-tool", scaled_mesh(make_uv_sphere(8, 10).value(), 0.2), 60); // 10 mm.
     const TestModel& bumps =
         test_model("rest-bumps", make_shape(Shape::bumpy_sphere, 2'000).value(), 100);
     const TestModel& gear = test_model("rest-gear", make_shape(Shape::gear, 1'500).value(), 100);

@@ -92,6 +92,15 @@ public:
             step(std::max(0.06 * model.diagonal_m - 0.0005 * i, pressed_m()));
         }
     }
+    /// Steps at one height; no change of the force may be greater than `most_n`.
+    void rest(int frames, double height_m, double most_n = kInfinity)
+    {
+        for (int i = 0; i < frames; ++i)
+        {
+            step(height_m);
+            EXPECT_LE(step_n, most_n) << i;
+        }
+    }
     [[nodiscard]] double pressed_m() const { return 0.02 * model.diagonal_m - 0.001; }
     [[nodiscard]] SceneChange change(SceneChangeKind kind, std::uint32_t generation) const
     {
@@ -191,18 +200,12 @@ TEST(SceneChanges, an_object_that_leaps_into_a_tool_makes_no_force_until_the_too
     change.number = 1;
     change.pose.translation_m = Vec3(0.0, 0.0, 10.0);
     sut.rig->change(change);
-    for (int i = 0; i < 50; ++i)
-    {
-        sut.step(height_m);
-    }
+    sut.rest(50, height_m);
     ASSERT_EQ(sut.output.pairs.size(), 1U);
     change.pose.translation_m.z() = height_m - 0.02 * sut.model.diagonal_m + 0.001;
     sut.rig->change(change);
-    for (int i = 0; i < 100; ++i)
-    {
-        sut.step(height_m);
-        ASSERT_EQ(sut.sent_n, Vec3(0.0, 0.0, 0.0)) << i;
-    }
+    sut.rest(100, height_m, 0.0);
+    ASSERT_EQ(sut.sent_n, Vec3(0.0, 0.0, 0.0));
     ASSERT_EQ(sut.output.pairs.size(), 2U);
     EXPECT_FALSE(sut.output.pairs[1].is_joined);
     for (int i = 0; i < 100 && !sut.output.pairs[1].is_joined; ++i)
@@ -220,20 +223,13 @@ TEST(SceneChanges, an_object_that_jumps_at_a_tool_is_lost_before_the_touch)
     {
         Pressed sut;
         const double above_m = 0.02 * sut.model.diagonal_m + height_m;
-        for (int i = 0; i < 50; ++i)
-        {
-            sut.step(above_m);
-        }
+        sut.rest(50, above_m);
         ASSERT_FALSE(sut.output.tools[0].in_contact);
         ObjectPose pose;
         pose.translation_m = Vec3(0.0, 0.0, 0.02);
         sut.rig->place_object(pose);
         EXPECT_EQ(sut.step(above_m).lost_object, height_m < 0.02 + kTouchSlack_m) << height_m;
-        for (int i = 0; i < 200; ++i)
-        {
-            sut.step(above_m);
-            ASSERT_LE(sut.step_n, 2.0 * 8.0 * 1e-3 / kRiseTime_s) << i;
-        }
+        sut.rest(200, above_m, 2.0 * 8.0 * 1e-3 / kRiseTime_s);
     }
 }
 
@@ -259,10 +255,7 @@ TEST(SceneChanges, tell_how_far_an_object_at_the_tool_went_and_took_it_along)
     const ToolOutput turned = sut.step(sut.pressed_m());
     EXPECT_NEAR(turned.object_rotation_rad, 1e-3, 1e-9);
     EXPECT_GE(turned.object_way_m, turned.carried_m.norm());
-    for (int i = 0; i < 300; ++i)
-    {
-        sut.step(0.5 * sut.model.diagonal_m);
-    }
+    sut.rest(300, 0.5 * sut.model.diagonal_m);
     pose.translation_m.z() += 1e-4;
     sut.rig->place_object(pose);
     EXPECT_EQ(sut.step(0.5 * sut.model.diagonal_m).object_way_m, 0.0);
@@ -359,11 +352,7 @@ TEST(SceneChanges, an_object_that_jumps_under_a_tool_lets_its_force_fade)
     pose.translation_m = Vec3(0.0, 0.0, -0.05); // More than 8 N / 500 N/m.
     sut.rig->place_object(pose);
     EXPECT_TRUE(sut.step(sut.pressed_m()).lost_object);
-    for (int i = 0; i < 200; ++i)
-    {
-        sut.step(sut.pressed_m());
-        ASSERT_LE(sut.step_n, 2.0 * kFadeStep_n);
-    }
+    sut.rest(200, sut.pressed_m(), 2.0 * kFadeStep_n);
 }
 
 TEST(SceneChanges, an_object_that_feels_otherwise_changes_the_force_in_small_steps)
@@ -371,10 +360,7 @@ TEST(SceneChanges, an_object_that_feels_otherwise_changes_the_force_in_small_ste
     Pressed sut;
     sut.press();
     // The tool comes to rest, so that nothing would be evaluated any more.
-    for (int i = 0; i < 100; ++i)
-    {
-        sut.step(sut.pressed_m());
-    }
+    sut.rest(100, sut.pressed_m());
     const double before_n = sut.output.tools[0].force_n.norm();
     const double depth_m = before_n / 500.0;
     SceneChange change = sut.change(SceneChangeKind::object_feels, 0);

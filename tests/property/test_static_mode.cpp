@@ -14,7 +14,7 @@ namespace tactus::test
 namespace
 {
 
-class StaticMode : public testing::TestWithParam<std::size_t>
+class StaticMode : public EachModel<1'200>
 {
 protected:
     static constexpr std::uint32_t kFramesMax = 4'000;
@@ -47,15 +47,10 @@ protected:
         }
         return frames;
     }
-
-    const TestModel& model_ = small_model(GetParam());
-    const std::uint64_t seed_ = seed_of(1'200 + GetParam());
-    Random random_ = Random::seeded(seed_);
 };
 
 TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     FrameRig sut(model_, static_options());
     if (frames_until_static(sut, {}) == kFramesMax)
     {
@@ -89,7 +84,6 @@ TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
 /// Records that are split to fill the pools also add faces that the question needs.
 TEST_P(StaticMode, says_what_it_lacks_while_it_fills)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     for (int place = 0; place < 20; ++place)
     {
         FrameRig sut(model_, static_options());
@@ -104,7 +98,6 @@ TEST_P(StaticMode, says_what_it_lacks_while_it_fills)
 
 TEST_P(StaticMode, comes_to_it_with_one_split_a_frame_and_a_link_that_loses)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     RigOptions options = static_options();
     options.faults.loss = 0.2;
     options.faults.seed = seed_;

@@ -4,10 +4,11 @@
 /// Distances of a whole model compared with brute force and the solid angle.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "tests/shared/random.hpp"
+#include "tests/property/frame_checks.hpp"
 #include "tests/shared/surface_points.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
+#include "tests/shared/winding_number.hpp"
 #include "transport/store/static_model.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,6 @@
 #include <fstream>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <thread>
 #include <vector>
@@ -29,37 +29,6 @@ namespace tactus::test
 namespace
 {
 
-using Wide = std::array<long double, 3>;
-
-/// Winding number of a closed surface about a point that is not on it (van Oosterom and Strackee).
-long double winding_number(const Vec3& point, const std::vector<Face>& faces)
-{
-    long double sum = 0.0L;
-    for (const Face& face : faces)
-    {
-        std::array<Wide, 3> to{};
-        std::array<long double, 3> length{};
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-            {
-                to.at(i).at(axis) = static_cast<long double>(face.at(i).at(axis)) -
-                                    static_cast<long double>(point[static_cast<int>(axis)]);
-                length.at(i) += to.at(i).at(axis) * to.at(i).at(axis);
-            }
-            length.at(i) = std::sqrt(length.at(i));
-        }
-        const auto dot = [&](std::size_t i, std::size_t k)
-        { return to[i][0] * to[k][0] + to[i][1] * to[k][1] + to[i][2] * to[k][2]; };
-        const long double volume = to[0][0] * (to[1][1] * to[2][2] - to[1][2] * to[2][1]) -
-                                   to[0][1] * (to[1][0] * to[2][2] - to[1][2] * to[2][0]) +
-                                   to[0][2] * (to[1][0] * to[2][1] - to[1][1] * to[2][0]);
-        sum += 2.0L * std::atan2(volume, length[0] * length[1] * length[2] + dot(0, 1) * length[2] +
-                                             dot(1, 2) * length[0] + dot(2, 0) * length[1]);
-    }
-    return sum / (4.0L * std::numbers::pi_v<long double>);
-}
-
 std::unique_ptr<StaticModel> open_whole(const TestModel& model)
 {
     auto opened = StaticModel::open(model.path);
@@ -67,7 +36,7 @@ std::unique_ptr<StaticModel> open_whole(const TestModel& model)
     return std::move(opened).value();
 }
 
-class StaticModelOf : public testing::TestWithParam<std::size_t>
+class StaticModelOf : public EachModel<4'100>
 {
 protected:
     /// Place in the source's frame.
@@ -91,15 +60,10 @@ protected:
         }
         return places;
     }
-
-    const TestModel& model_ = small_model(GetParam());
-    const std::uint64_t seed_ = seed_of(4'100 + GetParam());
-    Random random_ = Random::seeded(seed_);
 };
 
 TEST_P(StaticModelOf, distances_nearest_points_and_sides_are_those_of_the_source_mesh)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     const auto sut = open_whole(model_);
     const std::vector<Vec3> points_m = places(100);
     std::vector<PointDistance> answers(points_m.size());
@@ -122,7 +86,7 @@ TEST_P(StaticModelOf, distances_nearest_points_and_sides_are_those_of_the_source
         {
             ++sided;
             ASSERT_TRUE(sut->header().is_closed());
-            const auto winding = winding_number(here_m, model_.faces);
+            const auto winding = winding_number(model_.faces, here_m);
             EXPECT_NEAR(static_cast<double>(winding), answers[i].side == Side::inside ? 1.0 : 0.0,
                         1e-6);
         }
@@ -133,7 +97,6 @@ TEST_P(StaticModelOf, distances_nearest_points_and_sides_are_those_of_the_source
 
 TEST_P(StaticModelOf, several_threads_ask_one_model)
 {
-    SCOPED_TRACE(model_.name + " seed " + std::to_string(seed_));
     const auto sut = open_whole(model_);
     const std::vector<Vec3> points_m = places(100);
     std::array<std::vector<PointDistance>, 3> answers;

@@ -232,15 +232,8 @@ namespace
 /// Sphere with bumps and 1,000 faces, a twelfth as large as the model of the tests.
 const TestModel& mesh_tool()
 {
-    TriangleMesh mesh = make_shape(Shape::bumpy_sphere, 1'000).value();
-    for (auto& vertex : mesh.positions)
-    {
-        for (double& coordinate : vertex)
-        {
-            coordinate /= 12.0;
-        }
-    }
-    return test_model("tool-1k", mesh, 100);
+    return test_model("tool-1k",
+                      scaled_mesh(make_shape(Shape::bumpy_sphere, 1'000).value(), 1.0 / 12.0), 100);
 }
 
 struct MeshRun

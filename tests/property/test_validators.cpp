@@ -51,65 +51,69 @@ protected:
         ASSERT_EQ(flaw(), "");
     }
 
-    [[nodiscard]] std::uint32_t some_block(bool in_use)
+    /// First number for which a condition holds.
+    template <typename Condition>
+    [[nodiscard]] static std::uint32_t first(const Condition& holds, std::uint32_t from = 0)
     {
-        std::uint32_t index = 0;
-        while (sut().tree.is_block_in_use(index) != in_use)
+        while (!holds(from))
         {
-            ++index;
+            ++from;
         }
-        return index;
+        return from;
+    }
+    [[nodiscard]] std::uint32_t some_block(bool in_use, std::uint32_t from = 0)
+    {
+        return first([&](std::uint32_t i) { return sut().tree.is_block_in_use(i) == in_use; },
+                     from);
     }
     [[nodiscard]] std::uint32_t some_node(bool in_use)
     {
-        std::uint32_t index = 0;
-        while (sut().tree.node(index).in_use != in_use ||
-               sut().tree.root() == TreeRef::to_node(index))
-        {
-            ++index;
-        }
-        return index;
+        return first(
+            [&](std::uint32_t i) {
+                return sut().tree.node(i).in_use == in_use &&
+                       sut().tree.root() != TreeRef::to_node(i);
+            });
     }
     [[nodiscard]] std::uint32_t first_lane(std::uint32_t block)
     {
         return static_cast<std::uint32_t>(
             std::countr_zero(std::uint32_t{sut().tree.block(block).faces}));
     }
-    [[nodiscard]] std::uint32_t some_other_block(std::uint32_t block)
-    {
-        while (!sut().tree.is_block_in_use(++block))
-        {
-        }
-        return block;
-    }
     /// Slot with a page that has a refined record.
     [[nodiscard]] std::uint32_t pinned_slot()
     {
-        std::uint32_t slot = 0;
-        while (sut().pages.meta(slot).refined == 0)
-        {
-            ++slot;
-        }
-        return slot;
+        return first([&](std::uint32_t i) { return sut().pages.meta(i).refined != 0; });
+    }
+    /// Slot with a page that has none, other than this one.
+    [[nodiscard]] std::uint32_t unpinned_slot(ChunkId other = {})
+    {
+        return first(
+            [&](std::uint32_t i)
+            {
+                const PageTable::Meta& meta = sut().pages.meta(i);
+                return !meta.chunk.is_none() && meta.chunk != other && meta.refined == 0;
+            });
     }
     [[nodiscard]] std::uint32_t empty_slot()
     {
-        std::uint32_t slot = 0;
-        while (!sut().pages.meta(slot).chunk.is_none())
-        {
-            ++slot;
-        }
-        return slot;
+        return first([&](std::uint32_t i) { return sut().pages.meta(i).chunk.is_none(); });
+    }
+    /// Record that is linked but not refined.
+    [[nodiscard]] RecordId unsplit_record()
+    {
+        return {first(
+            [&](std::uint32_t i)
+            { return !sut().pages.is_refined({i}) && sut().pages.find_linked({i}) != nullptr; })};
     }
     /// Active face that some record has changed.
     [[nodiscard]] const VertexForest::ActiveFace& changed_face()
     {
-        std::uint32_t prim = 0;
-        while (sut().forest.face({prim}).id.is_none() || sut().forest.face({prim}).state.is_base())
-        {
-            ++prim;
-        }
-        return sut().forest.face({prim});
+        return sut().forest.face({first(
+            [&](std::uint32_t i)
+            {
+                const VertexForest::ActiveFace& face = sut().forest.face({i});
+                return !face.id.is_none() && !face.state.is_base();
+            })});
     }
 
     const TestModel& model_ = small_model(0);
@@ -237,7 +241,7 @@ TEST_F(Validators, faces_in_a_wrong_lane_are_told)
     const AbTree& tree = sut().tree;
     const std::uint32_t block = some_block(true);
     const std::uint32_t lane = first_lane(block);
-    const std::uint32_t other = some_other_block(block);
+    const std::uint32_t other = some_block(true, block + 1);
     expect_flaw(tree.block(block).faces, std::uint16_t{0}, "is in use and empty");
     expect_flaw(tree.side(block).prims[lane], PrimId{}, "holds a prim that does not exist");
     expect_flaw(tree.side(block).prims[lane], tree.side(other).prims[first_lane(other)],
@@ -245,7 +249,7 @@ TEST_F(Validators, faces_in_a_wrong_lane_are_told)
     std::uint32_t partly = block; // The last lane is free.
     while (std::popcount(tree.block(partly).faces) == kBlockFaces)
     {
-        partly = some_other_block(partly);
+        partly = some_block(true, partly + 1);
     }
     expect_flaw(tree.side(partly).coarse, flipped(tree.side(partly).coarse, kBlockFaces - 1),
                 "has wrong coarse bits");
@@ -270,11 +274,7 @@ TEST_F(Validators, pages_whose_bits_contradict_are_told)
 
 TEST_F(Validators, a_table_whose_index_has_other_pages_is_told)
 {
-    std::uint32_t unpinned = 0;
-    while (sut().pages.meta(unpinned).chunk.is_none() || sut().pages.meta(unpinned).refined != 0)
-    {
-        ++unpinned;
-    }
+    const std::uint32_t unpinned = unpinned_slot();
     const PageTable::Meta& meta = sut().pages.meta(unpinned);
     expect_flaw(meta, PageTable::Meta{}, "pages are in its slots, but its index differs");
     // The cache is not notified.
@@ -301,14 +301,7 @@ TEST_F(Validators, what_is_requested_and_here_is_told)
     sut().pages.adopt({request.key.number}, empty_slot(), ChunkCache::kFirstFrame);
     // The slot's end also reduces the count of those at the transport; evicting another restores
     // it.
-    std::uint32_t unpinned = 0;
-    while (sut().pages.meta(unpinned).chunk.is_none() ||
-           sut().pages.meta(unpinned).chunk == ChunkId{request.key.number} ||
-           sut().pages.meta(unpinned).refined != 0)
-    {
-        ++unpinned;
-    }
-    sut().pages.evict(unpinned);
+    sut().pages.evict(unpinned_slot({request.key.number}));
     EXPECT_EQ(flaw(), "chunk " + std::to_string(request.key.number) + " is requested and resident");
 }
 
@@ -357,15 +350,11 @@ TEST_F(Validators, records_that_contradict_the_cut_are_told)
     const std::uint32_t slot = pinned_slot();
     const auto place = static_cast<std::uint32_t>(std::countr_zero(sut().pages.meta(slot).refined));
     const VsplitRecord& record = sut().slots.pages[slot].records[place];
-    std::uint32_t split = 0; // Record that is linked but not refined.
-    while (sut().pages.is_refined({split}) || sut().pages.find_linked({split}) == nullptr)
-    {
-        ++split;
-    }
+    const RecordId split = unsplit_record();
     expect_flaw(record.fan_size, std::uint8_t{0}, "has no fan or too large a one");
-    expect_flaw(record.before[0], FaceState::after({split}, 2),
+    expect_flaw(record.before[0], FaceState::after(split, 2),
                 "was split before one that it depends on");
-    expect_flaw(record.star[2], sut().header.counts().face_of({split}, 0),
+    expect_flaw(record.star[2], sut().header.counts().face_of(split, 0),
                 "is refined, and a face of its star is not active");
     expect_flaw(record.position_m[1], record.position_m[1] + 1.0F,
                 "has another corner in the tree");
@@ -403,14 +392,10 @@ TEST_F(Validators, a_face_in_an_earlier_state_breaks_the_finest_corner_law)
 
 TEST_F(Validators, a_record_that_is_split_behind_the_forests_back_is_told)
 {
-    std::uint32_t split = 0;
-    while (sut().pages.is_refined({split}) || sut().pages.find_linked({split}) == nullptr)
-    {
-        ++split;
-    }
-    sut().pages.set_refined({split}, true);
-    EXPECT_NE(flaw().find("record " + std::to_string(split)), std::string::npos) << flaw();
-    sut().pages.set_refined({split}, false);
+    const RecordId split = unsplit_record();
+    sut().pages.set_refined(split, true);
+    EXPECT_NE(flaw().find("record " + std::to_string(split.value)), std::string::npos) << flaw();
+    sut().pages.set_refined(split, false);
     EXPECT_EQ(flaw(), "");
 }
 

@@ -149,6 +149,18 @@ std::vector<Face> faces_on_grid(const PreparedMesh& prepared)
     return faces;
 }
 
+TriangleMesh scaled_mesh(TriangleMesh mesh, double factor)
+{
+    for (auto& corner : mesh.positions)
+    {
+        for (double& coordinate : corner)
+        {
+            coordinate *= factor;
+        }
+    }
+    return mesh;
+}
+
 const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
                             std::uint32_t base_faces)
 {

@@ -51,6 +51,9 @@ struct TestModel
 /// Faces of a mesh on its grid, in metres of the model frame; exact.
 [[nodiscard]] std::vector<Face> faces_on_grid(const PreparedMesh& prepared);
 
+/// The mesh, scaled about its origin.
+[[nodiscard]] TriangleMesh scaled_mesh(TriangleMesh mesh, double factor);
+
 /// Model that is made once for each name and process.
 [[nodiscard]] const TestModel& test_model(const std::string& name, const TriangleMesh& mesh,
                                           std::uint32_t base_faces = 200);

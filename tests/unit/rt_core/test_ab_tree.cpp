@@ -117,68 +117,25 @@ TEST(AbTree, sixteen_faces_over_few_vertices_are_one_block_and_the_seventeenth_s
     EXPECT_GE(rig.sut->nodes_used(), 1U);
 }
 
-TEST(AbTree, sixteen_faces_over_48_vertices_are_spread_over_blocks)
-{
-    TreeRig rig({32, 64, 64});
-    for (std::uint32_t prim = 0; prim < 16; ++prim)
-    {
-        rig.put(unit_face(prim, 1, prim));
-        rig.sut->refit();
-        ASSERT_EQ(rig.faults(), "") << prim;
-    }
-    EXPECT_TRUE(rig.sut->is_complete());
-    EXPECT_GE(rig.sut->blocks_used(), 4U) << "a block holds 16 vertices, so 5 such faces";
-}
-
-TEST(AbTree, refit_visits_nothing_when_nothing_changed)
-{
-    Random random(30);
-    TreeRig rig({300, 400, 400});
-    for (std::uint32_t prim = 0; prim < 300; ++prim)
-    {
-        rig.put(random_face(random, face_styles()[0], prim, prim));
-    }
-    rig.sut->refit();
-
-    const AbTree::RefitWork work = rig.sut->refit();
-
-    EXPECT_EQ(work.blocks + work.nodes, 0U);
-}
-
-TEST(AbTree, refit_of_one_unchanged_box_stops_at_its_block)
-{
-    Random random(31);
-    TreeRig rig({300, 400, 400});
-    for (std::uint32_t prim = 0; prim < 300; ++prim)
-    {
-        rig.put(random_face(random, face_styles()[1], prim, prim));
-    }
-    rig.sut->refit();
-    rig.put(rig.face(17));
-
-    const AbTree::RefitWork work = rig.sut->refit();
-
-    EXPECT_EQ(work.blocks, 1U);
-    EXPECT_EQ(work.nodes, 0U);
-    EXPECT_EQ(rig.faults(), "");
-}
-
-TEST(AbTree, refit_leaves_unmarked_nodes_untouched)
+TEST(AbTree, refit_visits_no_more_than_has_changed)
 {
     Random random(32);
     TreeRig rig({300, 400, 400});
-    for (std::uint32_t prim = 0; prim < 300; ++prim)
-    {
-        rig.put(random_face(random, face_styles()[0], prim, prim));
-    }
-    rig.sut->refit();
+    fill_style(rig, random, face_styles()[0], 300);
     const std::uint32_t nodes = rig.sut->nodes_used();
+
+    AbTree::RefitWork work = rig.sut->refit();
+    EXPECT_EQ(work.blocks + work.nodes, 0U) << "nothing has changed";
+
+    rig.put(rig.face(17));
+    work = rig.sut->refit();
+    EXPECT_EQ(work.blocks, 1U) << "its box is unchanged";
+    EXPECT_EQ(work.nodes, 0U);
+
     ChangedFace moved = rig.face(17);
     moved.corners_m[0][1] += 50.0F;
     rig.put(moved);
-
-    const AbTree::RefitWork work = rig.sut->refit();
-
+    work = rig.sut->refit();
     std::uint32_t depth = 0;
     const std::uint32_t leaf = rig.sut->leaf_of({17});
     for (std::uint32_t node = rig.sut->side(leaf / kBlockFaces).parent; node != kNoNode;
@@ -252,11 +209,7 @@ TEST(AbTree, removing_all_faces_gives_every_block_and_node_back)
     {
         Random random(37);
         TreeRig rig({500, 700, 700});
-        for (std::uint32_t prim = 0; prim < 500; ++prim)
-        {
-            rig.put(random_face(random, style, prim, prim));
-        }
-        rig.sut->refit();
+        fill_style(rig, random, style, 500);
         EXPECT_TRUE(rig.sut->has_room_for(0));
         for (std::uint32_t prim = 0; prim < 500; ++prim)
         {
@@ -290,26 +243,6 @@ TEST(AbTree, faces_whose_paths_differ_only_in_the_last_bit_are_told_apart)
         ASSERT_EQ(rig.faults(), "") << prim;
     }
     EXPECT_TRUE(rig.sut->is_complete());
-}
-
-TEST(AbTree, the_order_of_insertion_does_not_change_the_roots_box)
-{
-    Random random(38);
-    TreeRig forward({200, 400, 400});
-    TreeRig backward({200, 400, 400});
-    for (std::uint32_t prim = 0; prim < 200; ++prim)
-    {
-        forward.put(random_face(random, face_styles()[1], prim, prim));
-    }
-    for (std::uint32_t prim = 200; prim-- > 0;)
-    {
-        backward.put(forward.face(prim));
-    }
-    forward.sut->refit();
-    backward.sut->refit();
-
-    ASSERT_FALSE(forward.sut->root().is_block());
-    EXPECT_EQ(forward.sut->box(), backward.sut->box());
 }
 
 } // namespace tactus::test

@@ -16,13 +16,13 @@ namespace
 {
 
 /// Index page in some part of the space, with spheres near it.
-struct BoxScene
+struct IndexScene
 {
     QuantumBox page_box;
     IndexPage page;
     std::vector<WantedSphere> spheres;
 
-    explicit BoxScene(Random& random)
+    explicit IndexScene(Random& random)
     {
         page.chunks = kChunksPerIndexPage;
         const double side = std::exp2(random.between(4.0, 24.0));
@@ -102,7 +102,7 @@ TEST(BoxKernels, decide_rightly_or_not_at_all_and_bound_the_gap_to_the_rest)
     std::uint32_t bounds = 0;
     for (int round = 0; round < 3'000; ++round)
     {
-        const BoxScene scene(random);
+        const IndexScene scene(random);
         const SphereLanes lanes(scene.spheres, 1.0);
         const KernelPage page = lanes.page(scene.page_box);
         const std::uint32_t first = 8 * random.below(8U);
@@ -155,7 +155,7 @@ TEST(BoxKernels, decide_rightly_or_not_at_all_and_bound_the_gap_to_the_rest)
 TEST(BoxKernels, decide_nothing_where_squares_are_no_numbers)
 {
     Random random(4'309);
-    BoxScene scene(random);
+    IndexScene scene(random);
     scene.spheres.resize(1);
     for (const double far : {1e19, 1e30})
     {

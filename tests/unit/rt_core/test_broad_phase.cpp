@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/scene/broad_phase.hpp"
-#include "tests/shared/random.hpp"
+#include "tests/unit/rt_core/support.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,9 +22,9 @@ namespace
 class Crowd
 {
 public:
-    Crowd(std::uint32_t objects, std::uint32_t tools) : memory_(bytes(objects, tools) / 64 + 1)
+    Crowd(std::uint32_t objects, std::uint32_t tools) : memory_(bytes(objects, tools))
     {
-        Arena arena(std::as_writable_bytes(std::span(memory_)));
+        Arena arena(memory_.bytes());
         sut = BroadPhase(arena, objects, tools);
     }
 
@@ -79,11 +79,7 @@ private:
         return arena.used();
     }
 
-    struct alignas(64) Line
-    {
-        std::array<std::byte, 64> bytes;
-    };
-    std::vector<Line> memory_;
+    ArenaMemory memory_;
 };
 
 /// Moves, adds and removes objects and tools in a world of this size, and checks the clearances.

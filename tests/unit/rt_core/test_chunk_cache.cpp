@@ -213,16 +213,6 @@ TEST(ChunkCache, a_chunk_that_is_here_is_not_asked_for_again)
     EXPECT_GT(rig.work.cache_hits, 0U);
 }
 
-TEST(ChunkCache, asks_for_no_more_chunks_than_the_transport_has_slots)
-{
-    CacheRig rig = one_index_page(2);
-    rig.ask({sphere(25, 10)});
-    rig.deliver_index_page(0);
-
-    EXPECT_EQ(rig.ask_chunks({sphere(400, 5'000)}).size(), 2U);
-    EXPECT_TRUE(rig.cache_was_full());
-}
-
 TEST(ChunkCache, never_evicts_what_this_rounds_spheres_need_and_says_that_it_is_full)
 {
     CacheRig rig = one_index_page(2);
@@ -312,18 +302,6 @@ TEST(ChunkCache, present_need_takes_the_place_of_what_was_only_predicted)
     EXPECT_FALSE(rig.has(7));
 }
 
-TEST(ChunkCache, rests_for_no_longer_than_the_pages_may_go_untouched)
-{
-    CacheRig sut = one_index_page(8);
-    sut.load({sphere(25, 10)});
-    for (int i = 0; i < 100; ++i)
-    {
-        ASSERT_TRUE(sut.ask({sphere(25, 10)}).empty());
-        const std::uint32_t slot = sut.table().find({0});
-        ASSERT_LE(sut.frame - sut.table().meta(slot).touched, 18U);
-    }
-}
-
 TEST(ChunkCache, goes_on_asking_while_something_had_to_wait)
 {
     CacheRig sut = one_index_page(8);
@@ -350,41 +328,6 @@ TEST(ChunkCache, without_shortcuts_every_frame_is_searched)
     }
     EXPECT_EQ(sut.work.regions_searched, 10U);
     EXPECT_EQ(sut.work.skipped.times(), (std::array<std::uint32_t, kSkips>{}));
-}
-
-TEST(ChunkCache, an_index_page_gives_way_when_the_spheres_have_moved_on)
-{
-    CacheRig rig(2, 1, 64 * 64 * 2);
-    rig.load({sphere(75, 1)});
-    ASSERT_EQ(rig.sut->index_pages_used(), 1U);
-
-    std::vector<ContentKey> asked;
-    for (int i = 0; i < 10 && asked.empty(); ++i)
-    {
-        asked = rig.ask({sphere(CacheRig::kPageDistance + 75, 1)});
-    }
-
-    ASSERT_EQ(asked.size(), 1U);
-    EXPECT_EQ(asked[0], (ContentKey{ContentKind::index_page, 1}));
-    EXPECT_EQ(rig.sut->index_pages_used(), 0U);
-    rig.deliver_index_page(1);
-    EXPECT_TRUE(rig.ask({sphere(CacheRig::kPageDistance + 75, 1)}).empty()) << "between two boxes";
-    EXPECT_EQ(rig.ask_chunks({sphere(CacheRig::kPageDistance + 125, 1)}), Chunks{64 + 1});
-}
-
-TEST(ChunkCache, adopts_no_more_arrivals_in_a_frame_than_the_limit_whatever_the_budget)
-{
-    CacheRig rig(kMaxArrivalsPerFrame + 1, 2, (kMaxArrivalsPerFrame + 1) * kRecordsPerChunk);
-    rig.budgets.pages = 10 * kMaxArrivalsPerFrame;
-    for (std::uint32_t chunk = 0; chunk <= kMaxArrivalsPerFrame; ++chunk)
-    {
-        rig.deliver_chunk(chunk);
-    }
-
-    rig.ask({});
-    EXPECT_EQ(rig.table().used(), kMaxArrivalsPerFrame);
-    rig.ask({});
-    EXPECT_EQ(rig.table().used(), kMaxArrivalsPerFrame + 1);
 }
 
 TEST(ChunkCache, has_no_more_requests_under_way_for_a_whole_model_than_the_limit)
@@ -519,21 +462,23 @@ TEST(ChunkCache, in_a_large_pool_looks_at_some_pages_a_request_and_refuses_after
     }
 }
 
-TEST(ChunkCache, adopts_no_more_arrivals_than_the_budget)
+TEST(ChunkCache, adopts_no_more_arrivals_in_a_frame_than_the_budget_and_the_limit)
 {
-    CacheRig rig = one_index_page(kChunks);
-    rig.ask({sphere(25, 10)});
-    rig.deliver_index_page(0);
-    for (const std::uint32_t chunk : rig.ask_chunks({sphere(400, 5'000)}))
+    for (const std::uint32_t budget : {3U, 10 * kMaxArrivalsPerFrame})
     {
-        rig.deliver_chunk(chunk);
-    }
-    rig.budgets.pages = 3;
+        CacheRig rig(kMaxArrivalsPerFrame + 1, 2, (kMaxArrivalsPerFrame + 1) * kRecordsPerChunk);
+        rig.budgets.pages = budget;
+        for (std::uint32_t chunk = 0; chunk <= kMaxArrivalsPerFrame; ++chunk)
+        {
+            rig.deliver_chunk(chunk);
+        }
+        const std::uint32_t most = std::min(budget, kMaxArrivalsPerFrame);
 
-    rig.ask({});
-    EXPECT_EQ(rig.table().used(), 3U);
-    rig.ask({});
-    EXPECT_EQ(rig.table().used(), 6U);
+        rig.ask({});
+        EXPECT_EQ(rig.table().used(), most);
+        rig.ask({});
+        EXPECT_EQ(rig.table().used(), std::min(2 * most, kMaxArrivalsPerFrame + 1));
+    }
 }
 
 } // namespace tactus::test

@@ -8,6 +8,7 @@
 #include "rt_core/query/query_memory.hpp"
 #include "rt_core/query/walk_budget.hpp"
 #include "tests/shared/owned_surface.hpp"
+#include "tests/shared/winding_number.hpp"
 #include "tests/unit/rt_core/support.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
@@ -90,29 +91,6 @@ Mesh step()
         faces.push_back({at(cap[0], 0), at(cap[2], 0), at(cap[1], 0)});
     }
     return faces;
-}
-
-/// Winding number of a closed mesh about a point: the sum of its faces' solid angles (van Oosterom
-/// and Strackee 1983).
-long double winding_number(const Mesh& mesh, const Vec3& point)
-{
-    long double sum = 0;
-    for (const auto& face : mesh)
-    {
-        std::array<Eigen::Matrix<long double, 3, 1>, 3> r;
-        for (std::size_t i = 0; i < 3; ++i)
-        {
-            r[i] = to_vec3(face[i]).cast<long double>() - point.cast<long double>();
-        }
-        const long double a = r[0].norm();
-        const long double b = r[1].norm();
-        const long double c = r[2].norm();
-        const long double volume = r[0].dot(r[1].cross(r[2]));
-        const long double below =
-            a * b * c + r[0].dot(r[1]) * c + r[1].dot(r[2]) * a + r[2].dot(r[0]) * b;
-        sum += 2 * std::atan2(volume, below);
-    }
-    return sum / (4 * std::numbers::pi_v<long double>);
 }
 
 /// Mesh in a tree, all exact, in a random order.

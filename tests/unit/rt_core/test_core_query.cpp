@@ -106,8 +106,7 @@ CoreAnswer ask(const AbTree& tree, const PlacedCore& core, double reach, QueryMe
                ErrorCode tolerance = 0)
 {
     CoreAnswer asked;
-    asked.budget.nodes = nodes;
-    asked.budget.triangles = triangles;
+    asked.budget = {nodes, triangles};
     gather_surface(tree, core, reach, memory, asked.budget, *asked.surface, ProofShare::most,
                    kEnoughMeetingFaces, tolerance);
     return asked;
@@ -368,8 +367,7 @@ TEST_P(FlatCoreQuery, a_body_that_lies_flat_measures_few_of_the_faces_below)
         const CoreTruth truth(faces, core, reach, tolerance);
         WorkBudget work;
         CoreAnswer asked;
-        asked.budget.nodes = 1'000'000;
-        asked.budget.triangles = 1'000'000;
+        asked.budget = {1'000'000, 1'000'000};
         asked.budget.frame = &work;
 
         gather_surface(*rig.sut, core, reach, memory, asked.budget, *asked.surface,

@@ -62,13 +62,17 @@ public:
         sut.fade(force, kPeriod_s, cause);
         return keep(force);
     }
-    /// Steps until the force is at full gain.
-    void warm_up()
+    void steps(int count)
     {
-        for (int i = 0; i < 200; ++i)
+        for (int i = 0; i < count; ++i)
         {
             step();
         }
+    }
+    /// Steps until the force is at full gain.
+    void warm_up()
+    {
+        steps(200);
         ASSERT_EQ(last.state, SafetyState::force);
         ASSERT_EQ(last.force_n, kForce_n);
     }
@@ -266,10 +270,7 @@ TEST(ForceFader, damps_turning_while_it_fades_and_by_a_share_of_the_torque_at_mo
         tool.warm_up();
         EXPECT_EQ(tool.last.torque_nm, Vec3(0.0, 0.0, 0.0)) << "none at the whole gain";
         tool.input.causes = ForceOff::stale;
-        for (int i = 0; i < 25; ++i)
-        {
-            tool.step();
-        }
+        tool.steps(25);
         const double most_nm = kDampingForceShare * limits.torque_max_nm;
         EXPECT_NEAR(tool.last.torque_nm.y(), -std::min(1e-3 * turning, most_nm), 1e-9);
         tool.input.rotation_rad_per_s.x() = std::numeric_limits<double>::quiet_NaN();
@@ -452,30 +453,22 @@ TEST(ForceFader, does_not_pull_a_hand_that_is_deeper_than_the_device_is_strong)
 
 TEST(ForceFader, a_fast_hand_is_calm_again_at_a_share_of_the_limit)
 {
-    GuardedTool tool;
-    tool.input.has_velocity = true;
-    const auto is_off_at = [&](double speed)
+    for (const bool turns : {false, true})
     {
-        tool.input.velocity_m_per_s = Vec3(0.0, 0.0, speed);
-        return tool.step().causes == ForceOff::velocity;
-    };
-    EXPECT_FALSE(is_off_at(0.99));
-    EXPECT_TRUE(is_off_at(1.01));
-    EXPECT_TRUE(is_off_at(1.01 * kCalmSpeedShare));
-    EXPECT_FALSE(is_off_at(0.99 * kCalmSpeedShare));
-    EXPECT_FALSE(is_off_at(0.99));
-
-    GuardedTool turned;
-    turned.input.has_rotation = true;
-    const auto is_off_rotation = [&](double share)
-    {
-        turned.input.rotation_rad_per_s = Vec3(share * kRotationMax_rad_per_s, 0.0, 0.0);
-        return turned.step().causes == ForceOff::velocity;
-    };
-    EXPECT_FALSE(is_off_rotation(0.99));
-    EXPECT_TRUE(is_off_rotation(1.01));
-    EXPECT_TRUE(is_off_rotation(1.01 * kCalmSpeedShare));
-    EXPECT_FALSE(is_off_rotation(0.99 * kCalmSpeedShare));
+        GuardedTool tool;
+        (turns ? tool.input.has_rotation : tool.input.has_velocity) = true;
+        const auto is_off_at = [&](double share)
+        {
+            Vec3& speed = turns ? tool.input.rotation_rad_per_s : tool.input.velocity_m_per_s;
+            speed = Vec3(0.0, 0.0, share * (turns ? kRotationMax_rad_per_s : 1.0));
+            return tool.step().causes == ForceOff::velocity;
+        };
+        EXPECT_FALSE(is_off_at(0.99));
+        EXPECT_TRUE(is_off_at(1.01));
+        EXPECT_TRUE(is_off_at(1.01 * kCalmSpeedShare));
+        EXPECT_FALSE(is_off_at(0.99 * kCalmSpeedShare));
+        EXPECT_FALSE(is_off_at(0.99));
+    }
 }
 
 TEST(ForceFader, finds_the_speed_of_a_device_that_does_not_tell_it)
@@ -513,10 +506,7 @@ TEST(ForceFader, damps_the_motion_while_it_fades_and_not_at_either_end)
     tool.input.force_n.setZero();
     tool.input.has_velocity = true;
     tool.input.velocity_m_per_s = Vec3(0.8, 0.0, 0.0);
-    for (int i = 0; i < 200; ++i)
-    {
-        tool.step();
-    }
+    tool.steps(200);
     EXPECT_EQ(tool.last.force_n.norm(), 0.0);
     tool.input.causes = ForceOff::deadman;
     double most_n = 0.0;
@@ -538,15 +528,9 @@ TEST(ForceFader, damps_nothing_on_the_way_back_where_nothing_is_felt)
         tool.input.force_n = is_touching ? GuardedTool::kForce_n : Vec3(0.0, 0.0, 0.0);
         tool.input.has_velocity = true;
         tool.input.velocity_m_per_s = Vec3(0.8, 0.0, 0.0);
-        for (int i = 0; i < 200; ++i)
-        {
-            tool.step();
-        }
+        tool.steps(200);
         tool.input.causes = ForceOff::deadman;
-        for (int i = 0; i < 60; ++i)
-        {
-            tool.step();
-        }
+        tool.steps(60);
         tool.input.causes = ForceOff::none;
         double most_n = 0.0;
         for (int i = 0; i < 100; ++i)

@@ -283,17 +283,6 @@ TEST(HalfSpaces, a_gap_holds_from_both_sides_and_one_without_width_is_a_plane)
     EXPECT_EQ(nearest<3>(plane, Vec3(1, 0, -3)).motion, Vec3(1, 0, 0.25));
 }
 
-TEST(HalfSpaces, that_squeeze_at_an_angle_too_small_for_an_edge_are_refused)
-{
-    for (const double angle : {0.0, 1e-9, 1e-8})
-    {
-        const Planes<3> planes{{Vec3(0, 0, 1), 0.1}, {Vec3(angle, 0, -1).normalized(), 0.1}};
-        EXPECT_FALSE(nearest<3>(planes, Vec3(0, 0, 0)).is_feasible) << angle;
-    }
-    const Planes<3> wedge{{Vec3(0, 0, 1), 0.1}, {Vec3(0.1, 0, -1).normalized(), 0.1}};
-    EXPECT_TRUE(nearest<3>(wedge, Vec3(0, 0, 0)).is_feasible);
-}
-
 TEST(HalfSpaces, hold_what_is_beyond_them_by_more_than_the_tolerance)
 {
     const Vec3 wanted(0, 0, 1);
@@ -327,17 +316,6 @@ TEST(HalfSpaces, squeeze_when_their_gap_is_too_narrow_by_more_than_the_tolerance
     }
 }
 
-TEST(HalfSpaces, as_many_as_the_limit_are_solved_within_the_rounds)
-{
-    static_assert(kConstraintRounds >= 2 * kMaxHalfSpaces, "each may join and leave");
-    Random random(10);
-    for (int round = 0; round < 2'000; ++round)
-    {
-        const Planes<6> planes = awkward_planes<6>(random, kMaxHalfSpaces, -3.0);
-        ASSERT_TRUE(nearest<6>(planes, 3.0 * in_cube<6>(random)).is_feasible) << round;
-    }
-}
-
 TEST(HalfSpacesDeathTest, more_of_them_than_the_limit_are_a_bug)
 {
     Planes<3> planes(kMaxHalfSpaces, {Vec3(0, 0, 1), -1.0});
@@ -348,6 +326,7 @@ TEST(HalfSpacesDeathTest, more_of_them_than_the_limit_are_a_bug)
 
 TEST(HalfSpaces, with_offsets_of_at_most_zero_always_allow_some_motion)
 {
+    static_assert(kConstraintRounds >= 2 * kMaxHalfSpaces, "each may join and leave");
     Random random(1);
     for (int round = 0; round < 2'000; ++round)
     {
@@ -362,13 +341,9 @@ TEST(HalfSpaces, with_offsets_of_at_most_zero_always_allow_some_motion)
     }
 }
 
-TEST(HalfSpaces, hold_as_all_subsets_of_them_say_in_three_dimensions)
+TEST(HalfSpaces, hold_as_all_subsets_of_them_say)
 {
     expect_same_as_oracle<3>(2, 14);
-}
-
-TEST(HalfSpaces, hold_as_all_subsets_of_them_say_in_six_dimensions)
-{
     expect_same_as_oracle<6>(3, 11);
 }
 

@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "rt_core/geometry/closest_points.hpp"
-#include "rt_core/geometry/crossing.hpp"
-#include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
 #include "rt_core/query/near_faces.hpp"
 #include "rt_core/query/unfinished_search.hpp"
 #include "tests/unit/rt_core/mesh_support.hpp"
-#include "tests/unit/rt_core/support.hpp"
-#include "tests/unit/rt_core/tree_support.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -27,24 +22,6 @@ namespace tactus::test
 namespace
 {
 
-/// Tool and object with this many faces, or a random number.
-struct Meshes
-{
-    TreeRig tool{{80, 200, 200}};
-    TreeRig object{{120, 300, 300}};
-
-    explicit Meshes(Random& random, bool is_tool_exact = true, bool is_object_exact = true,
-                    bool is_full = true)
-    {
-        fill(tool, random, is_full ? 80 : 1 + random.below(80), is_tool_exact);
-        fill(object, random, is_full ? 120 : 1 + random.below(120), is_object_exact);
-    }
-    [[nodiscard]] static Meshes of_any_size(Random& random, int round)
-    {
-        return Meshes(random, round % 3 != 0, round % 4 != 0, false);
-    }
-};
-
 /// Random placement, lifted by up to `most`.
 MeshPlacement lifted_placement(Random& random, double most)
 {
@@ -52,129 +29,6 @@ MeshPlacement lifted_placement(Random& random, double most)
     place.place.translation_m.y() += random.between(0.0, most);
     return place;
 }
-
-Triangle placed(const ChangedFace& face, const MeshPlacement& place)
-{
-    Triangle triangle = to_triangle(face.corners_m);
-    for (Vec3& corner : triangle)
-    {
-        corner = place.local_to_world(corner);
-    }
-    return triangle;
-}
-
-double error_of(const ChangedFace& face)
-{
-    return static_cast<double>(error_in_quanta(face.error)) * static_cast<double>(kTreeQuantum);
-}
-
-/// Largest errors of faces that count as the surface.
-struct Tolerances
-{
-    ErrorCode tool{0};
-    ErrorCode object{0};
-};
-
-/// All pairs, one by one, with the kernels that their own tests check.
-struct AllPairs
-{
-    double lower{kInfinity};
-    double upper{kInfinity};           ///< Least distance of exact faces.
-    double coarse_lower{kInfinity};    ///< Pairs with a face above the tolerance, less errors.
-    double tolerated_lower{kInfinity}; ///< Pairs with a coarse face within it, less errors.
-    double surface{kInfinity};         ///< Least distance of faces that count as the surface.
-    double corners{kInfinity};         ///< Least distance of two corners, with a tolerance.
-    std::set<MeetingFaces> meeting;
-    std::set<MeetingFaces> in_contact;
-    std::vector<std::tuple<double, FaceId, FaceId>> contacts; ///< Contacts in no order.
-
-    AllPairs(std::span<const ChangedFace> tool, std::span<const ChangedFace> object,
-             const MeshPlacement& place, double contact, const Tolerances& tolerances = {})
-        : tolerances_(tolerances)
-    {
-        for (const ChangedFace& tool_face : tool)
-        {
-            const Triangle first = placed(tool_face, place);
-            for (const ChangedFace& face : object)
-            {
-                add(tool_face, first, face, place.place.scale, contact);
-            }
-        }
-        lower = std::max(0.0, std::min({lower, coarse_lower, tolerated_lower}));
-    }
-
-    [[nodiscard]] Intersection intersection() const
-    {
-        return !meeting.empty() ? Intersection::proven
-               : is_all_known() ? Intersection::none
-                                : Intersection::open;
-    }
-    [[nodiscard]] bool is_all_known() const
-    {
-        return std::min(coarse_lower, tolerated_lower) > 0.0;
-    }
-
-private:
-    void add(const ChangedFace& tool_face, const Triangle& first, const ChangedFace& face,
-             double scale, double contact)
-    {
-        const Triangle second = to_triangle(face.corners_m);
-        const ClosestPoints closest = closest_points(first, second);
-        if ((tolerances_.tool | tolerances_.object) != 0)
-        {
-            add_corners(first, second);
-        }
-        const bool is_exact = tool_face.error == 0 && face.error == 0;
-        const bool is_surface =
-            tool_face.error <= tolerances_.tool && face.error <= tolerances_.object;
-        if (!is_exact)
-        {
-            double& least = is_surface ? tolerated_lower : coarse_lower;
-            least = std::min(least, closest.distance - closest.distance_error -
-                                        scale * error_of(tool_face) - error_of(face));
-        }
-        if (!is_surface)
-        {
-            return;
-        }
-        surface = std::min(surface, closest.distance);
-        if (is_exact)
-        {
-            lower = std::min(lower, std::max(0.0, closest.distance - closest.distance_error));
-            upper = std::min(upper, closest.distance);
-            if (meet(first, second))
-            {
-                meeting.insert({tool_face.face, face.face});
-            }
-        }
-        if (closest.distance <= contact)
-        {
-            in_contact.insert({tool_face.face, face.face});
-            contacts.emplace_back(closest.distance, face.face, tool_face.face);
-        }
-    }
-
-    void add_corners(const Triangle& first, const Triangle& second)
-    {
-        for (const Vec3& corner : first)
-        {
-            for (const Vec3& other : second)
-            {
-                corners = std::min(corners, (corner - other).norm());
-            }
-        }
-    }
-
-    Tolerances tolerances_;
-};
-
-struct Asked
-{
-    DistanceAnswer answer;
-    MeshReport report;
-    ContactReport contacts;
-    WalkBudget budget;
-};
 
 /// Runs a query until `enough` meeting pairs are found.
 Asked ask_for(std::uint32_t enough, const TreeRig& tool, const TreeRig& object,
@@ -219,23 +73,6 @@ Asked ask_nearest(const TreeRig& tool, const TreeRig& object, const MeshPlacemen
                        asked.report);
     asked.budget = surface.budget();
     return asked;
-}
-
-bool same_contacts(const ContactReport& a, const ContactReport& b)
-{
-    return a.is_complete == b.is_complete &&
-           std::ranges::equal(a.contacts, b.contacts,
-                              [](const Contact& one, const Contact& other)
-                              {
-                                  return std::tie(one.distance_m, one.face, one.tool_face) ==
-                                         std::tie(other.distance_m, other.face, other.tool_face);
-                              });
-}
-
-template <typename Faces>
-std::set<MeetingFaces> as_set(const Faces& faces)
-{
-    return {faces.begin(), faces.end()};
 }
 
 } // namespace
@@ -578,6 +415,8 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds_with_a_tolerance_and_withou
         tolerances.tool = code();
         tolerances.object = code();
         MeshMemory memory;
+        MeshMemory of_meeting{
+            {static_cast<std::uint32_t>(7 * half % 10), static_cast<std::uint32_t>(3 * half % 10)}};
         for (int query = 0; query < 8; ++query)
         {
             SCOPED_TRACE(std::to_string(round) + " " + std::to_string(query));
@@ -606,8 +445,15 @@ TEST(MeshQuery, finds_what_measuring_all_pairs_finds_with_a_tolerance_and_withou
             const double apart = (answer.nearest_point_m - answer.tool_point_m).norm();
             if (!is_tolerant)
             {
+                // The query of meeting faces alone finds the same.
                 ASSERT_EQ(asked.report.is_complete, truth.coarse_lower > 0.0);
                 ASSERT_EQ(asked.report.intersection, truth.intersection());
+                const MeshReport meeting =
+                    ask_meeting(tool, object, place, 1'000'000, of_meeting).report;
+                ASSERT_EQ(as_set(meeting.meeting), truth.meeting);
+                ASSERT_TRUE(std::is_sorted(meeting.meeting.begin(), meeting.meeting.end()));
+                ASSERT_EQ(meeting.is_complete, truth.coarse_lower > 0.0);
+                ASSERT_EQ(meeting.intersection, truth.intersection());
                 if (answer.kind == AnswerKind::exact)
                 {
                     ASSERT_LE(apart, answer.upper_m + 1e-13);
@@ -657,7 +503,7 @@ TEST(MeshQuery, that_wants_one_pair_ends_with_it_and_is_else_the_same)
     Random random(89);
     int met = 0;
     int apart = 0;
-    for (int round = 0; round < 160; ++round)
+    for (int round = 0; round < 200; ++round)
     {
         const Meshes meshes(random, round % 3 != 0, round % 3 != 1);
         const MeshPlacement place = lifted_placement(random, 1.0);
@@ -666,6 +512,7 @@ TEST(MeshQuery, that_wants_one_pair_ends_with_it_and_is_else_the_same)
         const AllPairs truth(meshes.tool.present(), meshes.object.present(), place, reach);
         MeshMemory memory{{random.below(10), random.below(10)}};
         MeshMemory same = memory;
+        MeshMemory of_meeting;
         const Asked all = ask(meshes.tool, meshes.object, place, reach, contact, memory);
         for (int again = 0; again < 2; ++again)
         {
@@ -673,6 +520,11 @@ TEST(MeshQuery, that_wants_one_pair_ends_with_it_and_is_else_the_same)
 
             ASSERT_EQ(sut.report.intersection, truth.intersection()) << round;
             ASSERT_EQ(sut.report.meeting.size(), truth.meeting.empty() ? 0U : 1U) << round;
+            const Asked any = ask_meeting(meshes.tool, meshes.object, place, 1, of_meeting);
+            ASSERT_EQ(any.report.intersection, truth.intersection()) << round;
+            ASSERT_EQ(any.report.meeting.size(), truth.meeting.empty() ? 0U : 1U) << round;
+            ASSERT_EQ(any.report.is_complete, truth.meeting.empty() && truth.coarse_lower > 0.0);
+            ASSERT_FALSE(any.report.is_truncated);
             if (truth.meeting.empty())
             {
                 ++apart;
@@ -697,6 +549,9 @@ TEST(MeshQuery, that_wants_one_pair_ends_with_it_and_is_else_the_same)
             ASSERT_FALSE(sut.report.is_complete);
             ASSERT_TRUE(contact < 0.0 || !sut.contacts.is_complete);
             ASSERT_TRUE(again == 0 || contact >= 0.0 || sut.budget.nodes_visited == 1);
+            // The last meeting pair is tried first.
+            ASSERT_TRUE(again == 0 || any.budget.nodes_visited == 1);
+            ASSERT_TRUE(truth.meeting.contains(any.report.meeting[0]));
         }
     }
     EXPECT_GT(met, 80);
@@ -771,65 +626,6 @@ TEST(MeshQuery, is_the_same_with_less_work_where_coarse_faces_are_known_to_be_fa
     EXPECT_LT(tested_knowing, tested);
 }
 
-TEST(MeetingFaces, are_those_of_the_whole_query)
-{
-    Random random(77);
-    int met = 0;
-    int apart = 0;
-    for (int round = 0; round < 80; ++round)
-    {
-        const auto [tool, object] = Meshes::of_any_size(random, round);
-        MeshMemory memory{{random.below(10), random.below(10)}};
-        for (int query = 0; query < 10; ++query)
-        {
-            const MeshPlacement place = lifted_placement(random, 1.5);
-            const AllPairs truth(tool.present(), object.present(), place, 0.0);
-
-            const Asked all = ask_meeting(tool, object, place, 1'000'000, memory);
-
-            ASSERT_EQ(as_set(all.report.meeting), truth.meeting) << round << " " << query;
-            ASSERT_TRUE(std::is_sorted(all.report.meeting.begin(), all.report.meeting.end()));
-            ASSERT_EQ(all.report.is_complete, truth.coarse_lower > 0.0);
-            ASSERT_EQ(all.report.intersection, truth.intersection());
-            met += truth.meeting.empty() ? 0 : 1;
-            apart += truth.meeting.empty() ? 1 : 0;
-        }
-    }
-    EXPECT_GT(met, 60);
-    EXPECT_GT(apart, 60);
-}
-
-TEST(MeetingFaces, end_with_the_first_and_say_so)
-{
-    Random random(78);
-    int met = 0;
-    for (int round = 0; round < 200; ++round)
-    {
-        const auto [tool, object] = Meshes(random);
-        const MeshPlacement place = random_placement(random);
-        const AllPairs truth(tool.present(), object.present(), place, 0.0);
-        MeshMemory memory;
-        for (int again = 0; again < 2; ++again)
-        {
-            const Asked any = ask_meeting(tool, object, place, 1, memory);
-
-            ASSERT_EQ(any.report.meeting.size(), truth.meeting.empty() ? 0U : 1U);
-            ASSERT_EQ(any.report.intersection,
-                      truth.meeting.empty() ? Intersection::none : Intersection::proven);
-            ASSERT_EQ(any.report.is_complete, truth.meeting.empty());
-            ASSERT_FALSE(any.report.is_truncated);
-            if (!truth.meeting.empty())
-            {
-                ++met;
-                ASSERT_TRUE(truth.meeting.contains(any.report.meeting[0]));
-                // The last meeting pair is tried first.
-                ASSERT_TRUE(again == 0 || any.budget.nodes_visited == 1);
-            }
-        }
-    }
-    EXPECT_GT(met, 50);
-}
-
 TEST(NearestFaces, are_those_of_all_pairs_however_far_and_whatever_is_remembered)
 {
     Random random(83);
@@ -837,7 +633,7 @@ TEST(NearestFaces, are_those_of_all_pairs_however_far_and_whatever_is_remembered
     int met = 0;
     for (int round = 0; round < 50; ++round)
     {
-        const auto [tool, object] = Meshes::of_any_size(random, round);
+        const auto [tool, object] = Meshes(random, round % 3 != 0, round % 4 != 0, false);
         MeshMemory memory{{random.below(10), random.below(10), random.below(20), 0}};
         for (int query = 0; query < 6; ++query)
         {

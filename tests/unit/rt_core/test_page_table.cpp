@@ -103,19 +103,6 @@ TEST_F(PageTableTest, refined_and_held_are_kept_apart_for_each_record)
     EXPECT_EQ(sut_.meta(1).refined, std::uint64_t{1} << 63U);
 }
 
-TEST_F(PageTableTest, all_slots_can_be_used)
-{
-    for (std::uint32_t slot = 0; slot < kPages; ++slot)
-    {
-        sut_.adopt({10 + slot}, slot, 0);
-    }
-    EXPECT_EQ(sut_.used(), kPages);
-    for (std::uint32_t slot = 0; slot < kPages; ++slot)
-    {
-        EXPECT_EQ(sut_.find({10 + slot}), slot);
-    }
-}
-
 namespace
 {
 

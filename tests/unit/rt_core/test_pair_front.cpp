@@ -4,14 +4,9 @@
 /// A front changes the work but no answer: each query that continues from the last one is compared
 /// with the same query from the roots, and with all pairs measured one by one.
 
-#include "rt_core/geometry/closest_points.hpp"
-#include "rt_core/geometry/crossing.hpp"
-#include "rt_core/math/infinity.hpp"
 #include "rt_core/query/mesh_query.hpp"
 #include "rt_core/query/pair_front.hpp"
 #include "tests/unit/rt_core/mesh_support.hpp"
-#include "tests/unit/rt_core/support.hpp"
-#include "tests/unit/rt_core/tree_support.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -48,14 +43,6 @@ void change(TreeRig& rig, Random& random, std::uint32_t count, bool exact_only)
     rig.sut->refit();
 }
 
-struct Answers
-{
-    DistanceAnswer answer;
-    MeshReport report;
-    ContactReport contacts;
-    WalkBudget budget;
-};
-
 enum class Kind : std::uint8_t
 {
     whole,
@@ -73,10 +60,10 @@ struct Asker
     MeshMemory memory{};
     ErrorCode tolerance{0}; ///< Tolerance of both models in queries of the whole.
 
-    [[nodiscard]] Answers ask(Kind kind, const MeshPlacement& place, double reach, double certified,
-                              const WalkBudget& budget = kAmple)
+    [[nodiscard]] Asked ask(Kind kind, const MeshPlacement& place, double reach, double certified,
+                            const WalkBudget& budget = kAmple)
     {
-        Answers answers;
+        Asked answers;
         const MeshQuestion question{*tool.sut,
                                     *object.sut,
                                     place,
@@ -109,54 +96,9 @@ struct Asker
     }
 };
 
-/// Result of measuring all pairs, by kernels that their own tests check.
-struct Truth
-{
-    double upper{kInfinity};
-    double coarse_lower{kInfinity};
-    std::set<MeetingFaces> meeting;
-
-    Truth(const TreeRig& tool, const TreeRig& object, const MeshPlacement& place)
-    {
-        for (const ChangedFace& own : tool.present())
-        {
-            Triangle first = to_triangle(own.corners_m);
-            for (Vec3& corner : first)
-            {
-                corner = place.local_to_world(corner);
-            }
-            for (const ChangedFace& face : object.present())
-            {
-                add(own, first, face, place.place.scale);
-            }
-        }
-    }
-
-private:
-    void add(const ChangedFace& own, const Triangle& first, const ChangedFace& face, double scale)
-    {
-        const Triangle second = to_triangle(face.corners_m);
-        const double distance = closest_points(first, second).distance;
-        if (own.error == 0 && face.error == 0)
-        {
-            upper = std::min(upper, distance);
-            if (meet(first, second))
-            {
-                meeting.insert({own.face, face.face});
-            }
-            return;
-        }
-        coarse_lower = std::min(coarse_lower, distance - scale * error_of(own) - error_of(face));
-    }
-    static double error_of(const ChangedFace& face)
-    {
-        return static_cast<double>(error_in_quanta(face.error)) * static_cast<double>(kTreeQuantum);
-    }
-};
-
 /// Expects equality to the last bit, except for the order of meeting pairs and the width of bounds
 /// beyond the reach.
-void expect_same(const Answers& one, const Answers& other, Kind kind)
+void expect_same(const Asked& one, const Asked& other, Kind kind)
 {
     ASSERT_EQ(one.report.intersection, other.report.intersection);
     ASSERT_EQ(one.report.is_complete, other.report.is_complete);
@@ -171,18 +113,10 @@ void expect_same(const Answers& one, const Answers& other, Kind kind)
     {
         return;
     }
-    ASSERT_EQ(std::set<MeetingFaces>(one.report.meeting.begin(), one.report.meeting.end()),
-              std::set<MeetingFaces>(other.report.meeting.begin(), other.report.meeting.end()));
+    ASSERT_EQ(as_set(one.report.meeting), as_set(other.report.meeting));
     ASSERT_EQ(one.answer.nearest_face, other.answer.nearest_face);
     ASSERT_EQ(one.report.nearest_tool_face, other.report.nearest_tool_face);
-    ASSERT_EQ(one.contacts.is_complete, other.contacts.is_complete);
-    ASSERT_EQ(one.contacts.contacts.size(), other.contacts.contacts.size());
-    for (std::size_t i = 0; i < one.contacts.contacts.size(); ++i)
-    {
-        ASSERT_EQ(one.contacts.contacts[i].face, other.contacts.contacts[i].face);
-        ASSERT_EQ(one.contacts.contacts[i].tool_face, other.contacts.contacts[i].tool_face);
-        ASSERT_EQ(one.contacts.contacts[i].distance_m, other.contacts.contacts[i].distance_m);
-    }
+    ASSERT_TRUE(same_contacts(one.contacts, other.contacts));
 }
 
 /// Motion of a tool that drifts, rests, reverses, and sometimes jumps.
@@ -240,12 +174,9 @@ TEST(PairFront, changes_no_answer_however_the_tool_goes_and_the_trees_change)
     int tolerant = 0;
     for (int round = 0; round < 15; ++round)
     {
-        TreeRig tool({80, 200, 200});
-        TreeRig object({120, 300, 300});
         const bool is_tool_exact = round % 3 != 0;
         const bool is_object_exact = round % 4 != 0;
-        fill(tool, random, 80, is_tool_exact);
-        fill(object, random, 120, is_object_exact);
+        auto [tool, object] = Meshes(random, is_tool_exact, is_object_exact);
         const auto front = std::make_unique<PairFront>();
         Asker sut{tool, object, front.get()};
         Motion motion(random);
@@ -257,7 +188,7 @@ TEST(PairFront, changes_no_answer_however_the_tool_goes_and_the_trees_change)
                                  : change(object, random, 120, is_object_exact);
             }
             const MeshPlacement& place = motion.next();
-            const Truth truth(tool, object, place);
+            const AllPairs truth(tool.present(), object.present(), place, -1.0);
             const auto kind = static_cast<Kind>(random.below(4));
             const double reach = random.between(0.0, 0.3);
             const double certified = random.one_in(2) && truth.coarse_lower > 0.0
@@ -275,14 +206,13 @@ TEST(PairFront, changes_no_answer_however_the_tool_goes_and_the_trees_change)
             }
             Asker from_the_roots{tool, object, nullptr, sut.memory, sut.tolerance};
 
-            const Answers answers = sut.ask(kind, place, reach, certified);
+            const Asked answers = sut.ask(kind, place, reach, certified);
 
             ASSERT_NO_FATAL_FAILURE(
                 expect_same(answers, from_the_roots.ask(kind, place, reach, certified), kind))
                 << round << " " << query;
             const bool is_all = kind == Kind::whole || kind == Kind::meeting;
-            const std::set<MeetingFaces> meeting(answers.report.meeting.begin(),
-                                                 answers.report.meeting.end());
+            const std::set<MeetingFaces> meeting = as_set(answers.report.meeting);
             if (is_all)
             {
                 ASSERT_EQ(meeting, truth.meeting) << round << " " << query;
@@ -318,10 +248,7 @@ TEST(PairFront, leaves_little_to_look_at_while_the_tool_goes_slowly_and_nothing_
     std::uint64_t without = 0;
     for (int round = 0; round < 10; ++round)
     {
-        TreeRig tool({80, 200, 200});
-        TreeRig object({120, 300, 300});
-        fill(tool, random, 80, true);
-        fill(object, random, 120, true);
+        const auto [tool, object] = Meshes(random);
         const auto front = std::make_unique<PairFront>();
         Asker sut{tool, object, front.get()};
         Asker from_the_roots{tool, object, nullptr};
@@ -330,14 +257,14 @@ TEST(PairFront, leaves_little_to_look_at_while_the_tool_goes_slowly_and_nothing_
         for (int query = 0; query < 30; ++query)
         {
             place.place.translation_m.x() += 1e-5;
-            const Answers answers = sut.ask(Kind::meeting, place, 0.0, 0.0);
-            const Answers from_roots = from_the_roots.ask(Kind::meeting, place, 0.0, 0.0);
+            const Asked answers = sut.ask(Kind::meeting, place, 0.0, 0.0);
+            const Asked from_roots = from_the_roots.ask(Kind::meeting, place, 0.0, 0.0);
             ASSERT_LE(answers.budget.nodes_visited, from_roots.budget.nodes_visited);
             with += answers.budget.nodes_visited;
             without += from_roots.budget.nodes_visited;
         }
-        const Answers moved = sut.ask(Kind::meeting, place, 0.0, 0.0);
-        const Answers rested = sut.ask(Kind::meeting, place, 0.0, 0.0);
+        const Asked moved = sut.ask(Kind::meeting, place, 0.0, 0.0);
+        const Asked rested = sut.ask(Kind::meeting, place, 0.0, 0.0);
         EXPECT_LE(rested.budget.nodes_visited, moved.budget.nodes_visited);
     }
     EXPECT_LT(4 * with, 3 * without); // Meeting pairs are always evaluated.
@@ -356,7 +283,7 @@ TEST(PairFront, knows_nothing_after_a_walk_of_more_than_kRoom_pairs)
     Asker from_the_roots{tool, object, nullptr};
     const MeshPlacement same;
 
-    const Answers answers = sut.ask(Kind::meeting, same, 0.0, 0.0);
+    const Asked answers = sut.ask(Kind::meeting, same, 0.0, 0.0);
 
     EXPECT_EQ(front->count, 0U);
     ASSERT_GT(answers.budget.nodes_visited, PairFront::kRoom);

@@ -63,7 +63,7 @@ Vec3 point_in(Random& random, const Aabb& box)
 }
 
 /// Boxes of a node, and a rotated box within a known distance of one of them.
-struct BoxScene
+struct NodeScene
 {
     AabbVolume::Rows boxes;
     Aabb other;
@@ -72,7 +72,7 @@ struct BoxScene
     std::uint32_t touched{0};
     double apart_units{0.0}; ///< Upper bound of the distance from the touched box.
 
-    explicit BoxScene(Random& random)
+    explicit NodeScene(Random& random)
     {
         const double size = std::exp2(random.between(-8.0, 8.0));
         const double away = random.one_in(2) ? 0.0 : std::exp2(random.between(-8.0, 18.0));
@@ -127,7 +127,7 @@ std::array<double, 2> extent(const Aabb& box, const MeshPlacement& place, const 
 }
 
 /// Greatest separation along six directions.
-double separation(const BoxScene& scene, std::uint32_t child)
+double separation(const NodeScene& scene, std::uint32_t child)
 {
     double widest = 0.0;
     for (int i = 0; i < 6; ++i)
@@ -389,7 +389,7 @@ TEST(PairKernels, give_the_same_bits_in_every_set)
     Random random(81);
     for (BlocksScene scene : pairs_of_shapes(random, 12))
     {
-        const BoxScene boxes(random);
+        const NodeScene boxes(random);
         const KernelBox box = boxes.seen();
         const float* const node = boxes.boxes.low.front().data();
         const std::uint32_t mask = random_mask(random, 16);
@@ -457,7 +457,7 @@ TEST(PairKernels, bound_the_distance_of_turned_boxes_from_below_and_closely)
     Random random(82);
     for (int round = 0; round < 20'000; ++round)
     {
-        const BoxScene scene(random);
+        const NodeScene scene(random);
         alignas(32) std::array<float, kNodeChildren> gaps{};
         const KernelBox box = scene.seen();
         static_cast<void>(portable_kernels().box_gaps(scene.boxes.low.front().data(), box, 0xFF,
@@ -489,7 +489,7 @@ TEST(PairKernels, leave_out_no_child_within_the_bound)
     std::uint32_t left_out = 0;
     for (int round = 0; round < 5'000; ++round)
     {
-        const BoxScene scene(random);
+        const NodeScene scene(random);
         const KernelBox box = scene.seen();
         const std::uint32_t mask = random_mask(random, 8);
         const auto bound = static_cast<float>(scene.apart_units + 2.0 * scene.slack_units());
@@ -509,7 +509,7 @@ TEST(PairKernels, bound_boxes_along_a_way_from_below)
     std::uint32_t raised = 0;
     for (int round = 0; round < 20'000; ++round)
     {
-        const BoxScene scene(random);
+        const NodeScene scene(random);
         const Vec3f way = random_way(random);
         const Vec3 direction = to_vec3(way);
         const KernelBox box = scene.seen();

@@ -81,19 +81,6 @@ TEST_F(RequestListTest, the_frame_counter_may_wrap)
     EXPECT_FALSE(sut.is_under_way(7));
 }
 
-TEST_F(RequestListTest, what_arrives_after_it_expired_takes_a_slot_all_the_same)
-{
-    RequestList sut = make(2);
-    sut.ask(7, 0);
-    expire_all(2, kRequestTimeoutFrames + 1);
-    ASSERT_FALSE(sut.is_under_way(7));
-
-    sut.arrive(7, 0);
-
-    sut.ask(8, 300);
-    EXPECT_FALSE(sut.has_credit());
-}
-
 TEST_F(RequestListTest, tells_how_long_pieces_took)
 {
     RequestList sut = make(40);

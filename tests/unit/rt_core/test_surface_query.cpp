@@ -93,8 +93,7 @@ PointAnswer ask(const AbTree& tree, const Vec3& center, double reach,
     PointAnswer asked;
     asked.surface->triangles = asked.surface->triangles.first(room);
     asked.surface->distances_m = asked.surface->distances_m.first(room);
-    asked.budget.nodes = nodes;
-    asked.budget.triangles = triangles;
+    asked.budget = {nodes, triangles};
     QueryMemory memory;
     gather_surface(tree, center, reach, memory, asked.budget, *asked.surface, ProofShare::most,
                    tolerance);
@@ -547,8 +546,7 @@ TEST(SurfaceQuery, after_a_jump_lists_each_face_once_and_the_same_faces_as_a_fir
         const Vec3 center(jump % 2 == 0 ? -0.2 * disc : 0.3 * disc, 0.01 * disc * jump, 1e-3);
         const PointAnswer first = ask(*rig.sut, center, disc);
         PointAnswer asked;
-        asked.budget.nodes = 1'000'000;
-        asked.budget.triangles = 1'000'000;
+        asked.budget = {1'000'000, 1'000'000};
         gather_surface(*rig.sut, center, disc, memory, asked.budget, *asked.surface);
         ASSERT_FALSE(asked.surface->is_cut) << jump;
         ASSERT_EQ(faces_of(*rig.sut, *asked.surface), faces_of(*rig.sut, *first.surface)) << jump;
@@ -574,9 +572,7 @@ TEST(SurfaceQuery, of_more_nodes_and_blocks_than_are_gone_through_in_order_misse
         {
             const Vec3 center = random.in_cube(0.05);
             const PointTruth truth(rig.present(), center);
-            WalkBudget budget;
-            budget.nodes = 1'000'000;
-            budget.triangles = 1'000'000;
+            WalkBudget budget{1'000'000, 1'000'000};
             QueryMemory memory;
 
             const DistanceAnswer answer =
@@ -609,8 +605,7 @@ TEST(TreeWalk, visits_exactly_the_coarse_blocks_when_asked_for_coarse_ones)
             expected.insert(rig.sut->leaf_of(face.prim) / kBlockFaces);
         }
     }
-    WalkBudget budget;
-    budget.nodes = 10'000;
+    WalkBudget budget{10'000};
     const KernelProbe probe = make_probe(Vec3(0, 0, 0), kTreeQuantum);
     TreeWalk sut(*rig.sut, probe, budget);
 
@@ -680,8 +675,7 @@ TEST(TreeWalk, of_the_deepest_tree_leaves_no_more_on_its_stack_than_the_limit)
     std::size_t deepest = 0;
     for (std::uint32_t nodes = 0; nodes <= levels; ++nodes)
     {
-        WalkBudget budget;
-        budget.nodes = nodes;
+        WalkBudget budget{nodes};
         TreeWalk sut(*rig.sut, probe, budget);
         EXPECT_EQ(sut.next_block(kInfiniteQuanta, false), kNoNode);
         deepest = std::max(deepest, sut.left().size());
@@ -702,8 +696,7 @@ TEST(TreeWalk, leaves_out_only_blocks_beyond_the_bound)
     {
         const Vec3 center = random_center(random);
         const double bound = random.between(0.0, 1.0);
-        WalkBudget budget;
-        budget.nodes = 10'000;
+        WalkBudget budget{10'000};
         const KernelProbe probe = make_probe(center, kTreeQuantum);
         const auto quanta = static_cast<float>(bound / static_cast<double>(kTreeQuantum));
         TreeWalk sut(*rig.sut, probe, budget);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace tactus::test
 {
 
@@ -25,48 +27,47 @@ ErrorCode after(SurfaceTolerance& sut, Room room, int frames)
 
 } // namespace
 
-TEST(SurfaceTolerance, is_the_least_while_that_fits)
+/// Room of some frames, and the tolerance after them.
+struct Frames
 {
-    SurfaceTolerance sut;
+    Room room;
+    int frames;
+    ErrorCode code;
+};
 
-    EXPECT_EQ(after(sut, Room::fitting, 1), kRange.least);
-    EXPECT_EQ(after(sut, Room::fitting, 1'000), kRange.least);
-    EXPECT_EQ(after(sut, Room::enough, 1'000), kRange.least);
-}
-
-TEST(SurfaceTolerance, doubles_where_something_stays_short_and_ends_at_the_most)
+TEST(SurfaceTolerance, grows_where_something_stays_short_and_shrinks_slowly_where_there_is_room)
 {
-    SurfaceTolerance sut;
-    (void)after(sut, Room::fitting, 1);
-
-    EXPECT_EQ(after(sut, Room::short_, 5), 20);
-    EXPECT_EQ(after(sut, Room::short_, 1), 24);
-    EXPECT_EQ(after(sut, Room::short_, 6), 28);
-    EXPECT_EQ(after(sut, Room::short_, 6), kRange.most);
-    EXPECT_EQ(after(sut, Room::short_, 1'000), kRange.most);
-}
-
-TEST(SurfaceTolerance, waits_longer_for_what_is_only_late)
-{
-    SurfaceTolerance sut;
-    (void)after(sut, Room::fitting, 1);
-
-    EXPECT_EQ(after(sut, Room::late, 23), 20);
-    EXPECT_EQ(after(sut, Room::late, 1), 24);
-    EXPECT_EQ(after(sut, Room::late, 12), 24);
-    EXPECT_EQ(after(sut, Room::short_, 3), 28);
-}
-
-TEST(SurfaceTolerance, shrinks_slowly_and_only_with_room_all_the_time)
-{
-    SurfaceTolerance sut;
-    (void)after(sut, Room::short_, 6);
-
-    EXPECT_EQ(after(sut, Room::enough, 29), 24);
-    EXPECT_EQ(after(sut, Room::fitting, 1), 24);
-    EXPECT_EQ(after(sut, Room::enough, 29), 24);
-    EXPECT_EQ(after(sut, Room::enough, 1), 23);
-    EXPECT_EQ(after(sut, Room::enough, 1'000), kRange.least);
+    const std::vector<std::vector<Frames>> runs{
+        // It is the least while that fits.
+        {{Room::fitting, 1, 20}, {Room::fitting, 1'000, 20}, {Room::enough, 1'000, 20}},
+        // It doubles where something stays short, and ends at the most.
+        {{Room::fitting, 1, 20},
+         {Room::short_, 5, 20},
+         {Room::short_, 1, 24},
+         {Room::short_, 6, 28},
+         {Room::short_, 6, kRange.most},
+         {Room::short_, 1'000, kRange.most}},
+        // It waits longer for what is only late.
+        {{Room::fitting, 1, 20},
+         {Room::late, 23, 20},
+         {Room::late, 1, 24},
+         {Room::late, 12, 24},
+         {Room::short_, 3, 28}},
+        // It shrinks only with room all the time.
+        {{Room::short_, 6, 24},
+         {Room::enough, 29, 24},
+         {Room::fitting, 1, 24},
+         {Room::enough, 29, 24},
+         {Room::enough, 1, 23},
+         {Room::enough, 1'000, 20}}};
+    for (const std::vector<Frames>& run : runs)
+    {
+        SurfaceTolerance sut;
+        for (const auto& [room, frames, code] : run)
+        {
+            EXPECT_EQ(after(sut, room, frames), code) << &run - runs.data() << ", " << frames;
+        }
+    }
 }
 
 TEST(SurfaceTolerance, one_short_frame_is_none)

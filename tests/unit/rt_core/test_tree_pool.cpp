@@ -27,7 +27,7 @@ class SharedTrees
 {
 public:
     SharedTrees(const TreeCapacities& capacities, const TreeCapacities& least)
-        : memory_(required(capacities))
+        : memory_(TreeRig::required(capacities))
     {
         Arena arena(memory_.bytes());
         pool.emplace(arena, capacities);
@@ -60,14 +60,6 @@ public:
     [[nodiscard]] std::string faults(std::uint32_t tree) const
     {
         return tree_faults(*trees[tree], faces[tree]);
-    }
-
-private:
-    static std::size_t required(const TreeCapacities& capacities)
-    {
-        Arena arena = Arena::measuring();
-        const TreePool measured(arena, capacities);
-        return arena.used();
     }
 
     ArenaMemory memory_;

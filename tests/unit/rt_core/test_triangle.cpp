@@ -3,10 +3,12 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "tests/shared/distance_oracle.hpp"
-#include "tests/unit/rt_core/support.hpp"
+#include "tests/shared/shape_scenes.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -22,25 +24,6 @@ struct Pose
     Triangle triangle;
     Vec3 query;
 };
-
-struct ShapeClass
-{
-    const char* name;
-    Pose (*make)(Random&);
-};
-
-void PrintTo(const ShapeClass& shape, std::ostream* out)
-{
-    *out << shape.name;
-}
-
-Vec3 on_grid(Random& random, std::uint32_t across, std::uint32_t up)
-{
-    const double x = random.below(across);
-    const double y = random.below(across);
-    const double z = random.below(up);
-    return {x, y, z};
-}
 
 /// Point near the triangle: above its inside, beside an edge or a corner, far away, or on it.
 Vec3 query_near(Random& random, const Triangle& triangle, double size)
@@ -64,97 +47,25 @@ Vec3 query_near(Random& random, const Triangle& triangle, double size)
     }
 }
 
-Pose with_query(Random& random, const Triangle& triangle, double size)
+/// Triangle with stored coordinates: floats on a grid, as in a model; often with such a query.
+TrianglePair on_the_grid(Random& random)
 {
-    return {triangle, query_near(random, triangle, size)};
-}
-
-Pose generic(Random& random)
-{
-    return with_query(random, {random.in_cube(1.0), random.in_cube(1.0), random.in_cube(1.0)}, 1.0);
-}
-
-/// Triangle with one short edge across a long one.
-Pose needle(Random& random)
-{
-    const Vec3 tip = random.in_cube(1.0);
-    const Vec3 end = random.in_cube(1.0);
-    const double width = std::exp2(random.between(-27.0, -3.0));
-    return with_query(random, {tip, end, end + random.in_cube(width)}, 1.0);
-}
-
-/// Triangle with the third corner just off the middle of the longest edge.
-Pose cap(Random& random)
-{
-    const Vec3 from = random.in_cube(1.0);
-    const Vec3 to = random.in_cube(1.0);
-    const double height = std::exp2(random.between(-26.6, -3.0));
-    const Vec3 foot = from + random.between(0.0, 1.0) * (to - from);
-    const Vec3 apex = foot + random.in_cube(height);
-    return with_query(random, {from, apex, to}, 1.0);
-}
-
-Pose two_equal_corners(Random& random)
-{
-    const Vec3 a = random.in_cube(1.0);
-    const Vec3 b = random.in_cube(1.0);
-    const std::array<Triangle, 3> triangles{Triangle{a, a, b}, Triangle{a, b, a},
-                                            Triangle{b, a, a}};
-    return with_query(random, triangles[random.below(3)], 1.0);
-}
-
-Pose all_equal_corners(Random& random)
-{
-    const Vec3 a = random.in_cube(1.0);
-    return with_query(random, {a, a, a}, 1.0);
-}
-
-/// Collinear triangle, exactly (small integers) or as nearly as doubles permit.
-Pose collinear(Random& random)
-{
-    if (random.one_in(2))
+    const auto point = [&random]
     {
-        const Vec3 a = on_grid(random, 8, 8);
-        const Vec3 step = on_grid(random, 4, 4) + Vec3(0, 0, 1);
-        return with_query(random, {a, a + step * random.below(5), a + step * random.below(5)}, 8.0);
-    }
-    const Vec3 a = random.in_cube(1.0);
-    const Vec3 b = random.in_cube(1.0);
-    return with_query(random, {a, b, a + random.between(-1.0, 2.0) * (b - a)}, 1.0);
+        const double x = random.below(1U << 16U);
+        const double y = random.below(1U << 16U);
+        return Vec3(Vec3(x, y, random.below(16)) * 0x1p-16);
+    };
+    return {{point(), point(), point()}, {point(), point(), point()}};
 }
 
-Pose far_away(Random& random)
+/// The second triangle of a pair with a point near it or of the first.
+Pose some_pose(const TrianglePair& pair, Random& random)
 {
-    Pose pose = generic(random);
-    const Vec3 offset = random.in_cube(1e6);
-    for (Vec3& corner : pose.triangle)
-    {
-        corner += offset;
-    }
-    if (!random.one_in(4))
-    {
-        pose.query += offset;
-    }
-    return pose;
-}
-
-Pose tiny(Random& random)
-{
-    Pose pose = random.one_in(2) ? generic(random) : needle(random);
-    for (Vec3& corner : pose.triangle)
-    {
-        corner *= 1e-6;
-    }
-    pose.query *= 1e-6;
-    return pose;
-}
-
-/// Triangle with stored coordinates: floats on a grid, as in a model.
-Pose on_the_grid(Random& random)
-{
-    const auto point = [&random] { return Vec3(on_grid(random, 1U << 16U, 16) * 0x1p-16); };
-    const Triangle triangle{point(), point(), point()};
-    return {triangle, random.one_in(3) ? point() : query_near(random, triangle, 1.0)};
+    const Triangle& triangle = pair.second;
+    const double size =
+        std::max((triangle[1] - triangle[0]).norm(), (triangle[2] - triangle[0]).norm());
+    return {triangle, random.one_in(4) ? pair.first[0] : query_near(random, triangle, size)};
 }
 
 double magnitude(const Pose& pose)
@@ -197,9 +108,14 @@ double deviation(const Pose& pose, double distance, double allowed)
                                         static_cast<Quad>(distance)));
 }
 
-class ClosestPointTest : public ::testing::TestWithParam<ShapeClass>
+class ClosestPointTest : public ::testing::TestWithParam<PairClass>
 {
 };
+
+std::string shape_name(const testing::TestParamInfo<PairClass>& shape)
+{
+    return shape.param.name;
+}
 
 } // namespace
 
@@ -209,9 +125,9 @@ TEST_P(ClosestPointTest, keeps_its_error_law_and_reports_a_point_of_the_triangle
     double worst_law = 0.0;
     double worst_place = 0.0;
     double worst_reach = 0.0;
-    for (int i = 0; i < 120'000; ++i)
+    for (int i = 0; i < 180'000; ++i)
     {
-        const Pose pose = GetParam().make(random);
+        const Pose pose = some_pose(GetParam().make(random), random);
         const ClosestPoint answer = closest_point_on_triangle(pose.query, pose.triangle);
         ASSERT_TRUE(answer.point.allFinite()) << "case " << i;
         ASSERT_TRUE(std::isfinite(answer.distance_sq) && answer.distance_sq >= 0.0) << "case " << i;
@@ -235,14 +151,9 @@ TEST_P(ClosestPointTest, keeps_its_error_law_and_reports_a_point_of_the_triangle
                 GetParam().name, worst_law, worst_place, worst_reach);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, ClosestPointTest,
-    ::testing::Values(ShapeClass{"generic", generic}, ShapeClass{"needle", needle},
-                      ShapeClass{"cap", cap}, ShapeClass{"two_equal_corners", two_equal_corners},
-                      ShapeClass{"all_equal_corners", all_equal_corners},
-                      ShapeClass{"collinear", collinear}, ShapeClass{"far_away", far_away},
-                      ShapeClass{"tiny", tiny}, ShapeClass{"on_the_grid", on_the_grid}),
-    [](const auto& shape) { return std::string(shape.param.name); });
+INSTANTIATE_TEST_SUITE_P(Shapes, ClosestPointTest, ::testing::ValuesIn(pair_classes()), shape_name);
+INSTANTIATE_TEST_SUITE_P(Stored, ClosestPointTest,
+                         ::testing::Values(PairClass{"on_the_grid", on_the_grid}), shape_name);
 
 TEST(ClosestPoint, names_the_feature_of_each_voronoi_region)
 {

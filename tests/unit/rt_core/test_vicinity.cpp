@@ -78,6 +78,7 @@ TEST(Vicinity, of_nothing_lets_everything_go)
     EXPECT_EQ(sut.size(), 0U);
     EXPECT_EQ(sut.reach_m(), 1.0);
     EXPECT_FALSE(sut.find_entered(Vec3(1, 2, 3), 0.1).has_value());
+    EXPECT_FALSE(sut.find_entered(Vec3(1, 2, 3), 0.0).has_value()) << "a point without a skin";
     EXPECT_EQ(sut.free_share(Vec3(1, 2, 3), 0.1), 1.0);
     EXPECT_TRUE(std::isinf(sut.bound_of_surface(0, Vec3(0, 0, 0))));
 }
@@ -442,12 +443,6 @@ TEST(Vicinity, a_sphere_in_a_face_goes_no_way_along_it_or_deeper)
     EXPECT_EQ(sut.share_before(0, Vec3(0, 0, 0.5), 0.2), 1.0) << "out of it all of the way is free";
     EXPECT_EQ(sut.share_before(0, Vec3(0, 0, 0), 0.05), 1.0);
     EXPECT_NEAR(sut.share_before(0, Vec3(0, 0, -0.1), 0.05), 0.5, 1e-6);
-}
-
-TEST(Vicinity, of_nothing_lets_a_point_without_a_skin_go)
-{
-    Vicinity sut({}, Vec3(0, 0, 0), 1.0);
-    EXPECT_FALSE(sut.find_entered(Vec3(1, 2, 3), 0.0).has_value());
 }
 
 } // namespace tactus::test

@@ -77,7 +77,6 @@ public:
     }
     [[nodiscard]] std::string faults() const { return tree_faults(*sut, present()); }
 
-private:
     static std::size_t required(const TreeCapacities& capacities)
     {
         Arena arena = Arena::measuring();
@@ -85,6 +84,7 @@ private:
         return arena.used();
     }
 
+private:
     ArenaMemory memory_;
     std::optional<TreePool> pool_;
     std::vector<ChangedFace> faces_;
@@ -147,6 +147,15 @@ inline const std::array<FaceStyle, 5>& face_styles()
     return changed;
 }
 
+/// Adds `count` faces of a style, each with its prim as its id, and refits.
+inline void fill_style(TreeRig& rig, Random& random, const FaceStyle& style, std::uint32_t count)
+{
+    for (std::uint32_t prim = 0; prim < count; ++prim)
+    {
+        rig.put(random_face(random, style, prim, prim));
+    }
+    rig.sut->refit();
+}
 /// Faces of a surface, each once.
 [[nodiscard]] inline std::set<std::uint32_t> faces_of(const AbTree& tree,
                                                       const LocalSurface& surface)
