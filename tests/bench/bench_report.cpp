@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
 #include "tests/bench/bench_report.hpp"
 
 #include "platform/loop/machine.hpp"
@@ -11,6 +12,19 @@
 
 namespace tactus::bench
 {
+
+void add_trial_rows(const test::TrialFigures& figures, const std::string& part, Rows& rows)
+{
+    Row common;
+    common.suite = "stability";
+    common.part = part;
+    common.test_case = figures.name;
+    common.scene = figures.name;
+    CaseRows claim(rows, common);
+    claim.add("trials", static_cast<double>(figures.trials), "");
+    claim.add("worst error", figures.worst, figures.unit, figures.bound);
+    claim.add("violations", static_cast<double>(figures.violations), "", 0.0);
+}
 
 namespace
 {
@@ -78,17 +92,13 @@ nlohmann::ordered_json to_json(const Row& row)
 
 } // namespace
 
-std::string to_text(const Rows& rows, Figures which)
+std::string to_text(const Rows& rows)
 {
     const GoalCount count = count_goals(rows);
     std::string text;
     std::string heading;
     for (const Row& row : rows)
     {
-        if (which == Figures::with_goals && !row.goal)
-        {
-            continue;
-        }
         if (std::string now = heading_of(row); now != heading)
         {
             heading = std::move(now);
@@ -128,6 +138,28 @@ std::string to_json(const Results& results, const RunFacts& facts)
         all["failures"] = results.failures;
     }
     return all.dump(2) + "\n";
+}
+
+Row& CaseRows::add(const std::string& metric, double value, const std::string& unit,
+                   std::optional<double> goal)
+{
+    Row& row = rows_.emplace_back(common_);
+    row.metric = metric;
+    row.value = value;
+    row.unit = unit;
+    row.goal = goal;
+    return row;
+}
+
+GoalCount count_goals(const Rows& rows)
+{
+    GoalCount count;
+    for (const Row& row : rows)
+    {
+        count.goals += row.goal ? 1U : 0U;
+        count.met += row.goal && row.is_met() ? 1U : 0U;
+    }
+    return count;
 }
 
 } // namespace tactus::bench

@@ -57,18 +57,8 @@ struct EncoderContext : CaseContext
     const EncoderMesh& mesh;
 };
 
-/// Parts of the suite, which fail like cases.
-
 /// Our simplifier and the peers' on one mesh: faces reached, errors of the surface and its
 /// features, and time. All on one thread; ours also on two, with the same result.
 void compare_simplifiers(const EncoderContext& context);
-
-/// The whole encoder, from a mesh in memory to a file, each run in its own process: time, memory,
-/// content and reading speed of the file. One thread and two give the same bytes.
-void measure_files(const EncoderContext& context);
-
-/// Ratio of the bounds to the true errors, splits until a distance is exact, and bytes of a first
-/// contact, for a tool radius of 1 % of the diagonal.
-void measure_bounds(const EncoderContext& context);
 
 } // namespace tactus::bench

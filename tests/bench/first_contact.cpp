@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
 #include "tests/bench/first_contact.hpp"
 
-#include "tests/bench/least_times.hpp"
+#include "tests/bench/measuring.hpp"
 #include "tests/shared/certificate_refinement.hpp"
 #include "tests/shared/influence_index.hpp"
+#include "tests/shared/random.hpp"
 #include "tests/shared/surface_points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
 namespace tactus::bench
 {
-
 namespace
 {
 
@@ -123,6 +125,30 @@ FirstContactFigures measure_first_contact(const ModelStore& store, const Decoded
                      counted);
     }
     return figures_of(store, counted);
+}
+
+ExactSplits measure_exact_splits(const DecodedModel& model, const std::vector<test::Face>& source,
+                                 const test::FaceTree& tree, double radius_m, std::uint32_t probes,
+                                 std::uint64_t seed)
+{
+    const test::CertificateRefinement refinement(model);
+    test::SurfacePoints surface(source, seed);
+    std::vector<double> splits;
+    ExactSplits figures;
+    for (std::uint32_t i = 0; i < probes; ++i)
+    {
+        const Vec3 direction(test::signed_unit(seed, 4 * i), test::signed_unit(seed, 4 * i + 1),
+                             test::signed_unit(seed, 4 * i + 2));
+        const double way_m = 2.0 * radius_m * std::abs(test::signed_unit(seed, 4 * i + 3));
+        const Vec3 place_m = surface.draw_by_area() + way_m * direction.normalized();
+        const auto answer = refinement.find_distance(place_m);
+        splits.push_back(static_cast<double>(answer.splits.size()));
+        figures.distance_error_max_m =
+            std::max(figures.distance_error_max_m,
+                     std::abs(answer.distance_m - tree.nearest(place_m).distance_m));
+    }
+    figures.splits = contact_spread_of(splits);
+    return figures;
 }
 
 } // namespace tactus::bench

@@ -2,9 +2,8 @@
 // Copyright the Tactus authors.
 #include "tests/bench/frame_replay.hpp"
 
-#include "tests/bench/heap_use.hpp"
 #include "tests/bench/instruction_count.hpp"
-#include "tests/bench/stage_timer.hpp"
+#include "tests/bench/measuring.hpp"
 
 #include <fmt/format.h>
 

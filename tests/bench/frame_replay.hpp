@@ -5,7 +5,6 @@
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/work_counters.hpp"
-#include "tests/bench/least_times.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/shared/frame_rig.hpp"

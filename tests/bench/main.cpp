@@ -25,7 +25,6 @@ struct Request
 {
     std::string suite;
     std::string json; ///< Output file; empty: none.
-    bool all{false};
     bool check{false};
     BenchOptions options;
 };
@@ -80,8 +79,6 @@ void declare_options(CommandLine& line, Request& request)
     line.add_flag("--instructions", options.instructions,
                   "Suites frame, skip, scene and worst: count instructions as well, by valgrind; "
                   "takes some 20 times as long");
-    line.add_flag("--all", request.all,
-                  "Print every row, not only those with a goal, of the suite frame");
     line.add_flag("--check", request.check, "Leave with code 1 when a goal is not met");
     line.add_option("--json", request.json, "Write the rows to this file as JSON");
 }
@@ -158,7 +155,7 @@ Results run_suites(const Request& request, GoalCount& laws)
         {
             results.failures.push_back(*refused);
         }
-        fmt::print("{}", to_text(own, request.all ? Figures::all : suite.printed));
+        fmt::print("{}", to_text(own));
         const GoalCount count = count_goals(own);
         laws.goals += suite.always_checks ? count.goals : 0;
         laws.met += suite.always_checks ? count.met : 0;

@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
 #include "tests/bench/program.hpp"
 
+#include "tests/bench/bench_row.hpp"
+
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <exception>
 #include <fcntl.h>
 #include <fstream>
+#include <malloc.h>
 #include <sched.h>
+#include <string_view>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
@@ -17,6 +25,171 @@
 
 namespace tactus::bench
 {
+namespace
+{
+
+using Json = nlohmann::json;
+
+NetworkEnd end_of(const Json& ready, const char* name)
+{
+    return {fmt::format("/proc/{}/fd/{}", ready["pid"].get<int>(), ready[name]["fd"].get<int>()),
+            ready[name]["dds"].get<std::string>()};
+}
+
+} // namespace
+
+RelayedNetworks RelayedNetworks::make(const LinkManner& manner, const std::filesystem::path& folder)
+{
+    ProgramSetup setup;
+    setup.words = {program_path("network_relay"),
+                   "--delay-ms",
+                   fmt::format("{}", manner.delay_ms),
+                   "--loss",
+                   fmt::format("{}", manner.loss),
+                   "--seed",
+                   fmt::format("{}", kSeed)};
+    setup.output = folder / "relay.log";
+    setup.is_asked = true;
+    auto relay = Program::start(setup);
+    RelayedNetworks networks(std::move(relay));
+    const auto ready = networks.relay_.ask("");
+    const Json facts = Json::parse(ready);
+    networks.server_ = end_of(facts, "server");
+    networks.controller_ = end_of(facts, "controller");
+    return networks;
+}
+
+LinkTraffic RelayedNetworks::traffic()
+{
+    const auto answer = relay_.ask("count");
+    const Json counted = Json::parse(answer);
+    LinkTraffic traffic;
+    for (const char* direction : {"to_server", "to_controller"})
+    {
+        traffic.payload_bytes += counted[direction]["udp_payload_bytes"].get<std::uint64_t>();
+        traffic.datagrams += counted[direction]["udp_datagrams"].get<std::uint64_t>();
+    }
+    return traffic;
+}
+
+std::uint32_t dds_domain()
+{
+    constexpr std::uint32_t kDomains = 231;
+    return static_cast<std::uint32_t>(::getpid()) % kDomains;
+}
+
+Program start_at(const NetworkEnd& end, const std::string& name,
+                 const std::filesystem::path& folder, const std::vector<std::string>& arguments)
+{
+    ProgramSetup setup;
+    setup.words = {program_path(name), "--domain", fmt::format("{}", dds_domain())};
+    setup.words.insert(setup.words.end(), arguments.begin(), arguments.end());
+    if (!end.dds_uri.empty())
+    {
+        setup.words.emplace_back("--plain");
+    }
+    setup.network = end.network;
+    setup.dds_uri = end.dds_uri;
+    setup.output = folder / (name + ".log");
+    return Program::start(setup);
+}
+
+Program publish(const Scene& scene, const NetworkEnd& end, const std::filesystem::path& folder)
+{
+    Program server = start_at(end, "spm_publish", folder, {scene.model.path, "--name", "model"});
+    server.wait_for("ready on DDS domain", kStartTimeout);
+    return server;
+}
+
+namespace
+{
+
+constexpr int kWorkDone = 0;
+constexpr int kWorkFailed = 1;
+
+void write_all(int file, std::string_view text)
+{
+    while (!text.empty())
+    {
+        const ssize_t written = ::write(file, text.data(), text.size());
+        if (written < 0 && errno != EINTR)
+        {
+            ::_exit(kWorkFailed);
+        }
+        text.remove_prefix(written < 0 ? 0 : static_cast<std::size_t>(written));
+    }
+}
+
+std::string read_all(int file)
+{
+    std::string text;
+    std::array<char, 4'096> buffer{};
+    ssize_t count = 0;
+    do
+    {
+        count = ::read(file, buffer.data(), buffer.size());
+        text.append(buffer.data(), count < 0 ? 0 : static_cast<std::size_t>(count));
+    } while (count > 0 || (count < 0 && errno == EINTR));
+    return text;
+}
+
+/// Body of the child. It exits without the parent's destructors and buffers.
+[[noreturn]] void live(int answer, const std::function<std::string()>& work)
+{
+    int code = kWorkFailed;
+    std::string text;
+    try
+    {
+        text = work();
+        code = kWorkDone;
+    }
+    catch (const std::exception& error)
+    {
+        text = error.what();
+    }
+    write_all(answer, text);
+    ::_exit(code);
+}
+
+} // namespace
+
+ChildOutcome run_in_child(const std::function<std::string()>& work)
+{
+    std::array<int, 2> ends{};
+    if (::pipe(ends.data()) != 0)
+    {
+        throw Failure(fmt::format("no pipe to a child process: {}", std::strerror(errno)));
+    }
+    ::malloc_trim(0); // The child inherits memory that was freed but not returned.
+    const pid_t child = ::fork();
+    if (child == 0)
+    {
+        ::close(ends[0]);
+        live(ends[1], work);
+    }
+    const int fork_error = errno;
+    ::close(ends[1]);
+    const std::string text = child < 0 ? "" : read_all(ends[0]);
+    ::close(ends[0]);
+    if (child < 0)
+    {
+        throw Failure(fmt::format("no child process: {}", std::strerror(fork_error)));
+    }
+    int status = 0;
+    rusage usage{};
+    while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR)
+    {
+    }
+    if (WIFSIGNALED(status))
+    {
+        throw Failure(fmt::format("a child process was ended by signal {}", WTERMSIG(status)));
+    }
+    if (WEXITSTATUS(status) != kWorkDone)
+    {
+        throw Failure(text);
+    }
+    return ChildOutcome{text, static_cast<std::uint64_t>(usage.ru_maxrss) * 1'024};
+}
 
 namespace
 {

@@ -8,7 +8,9 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <sys/types.h>
 #include <utility>
@@ -75,5 +77,73 @@ private:
     std::filesystem::path output_;
     int talk_{-1};
 };
+
+/// Properties of the link between two networks, each way.
+struct LinkManner
+{
+    double delay_ms{10.0};
+    double loss{0.0};
+};
+
+/// One end: the network of a program and its DDS configuration. Default: this machine's loopback
+/// interface, which our programs configure themselves.
+struct NetworkEnd
+{
+    std::string network; ///< ProgramSetup::network.
+    std::string dds_uri;
+};
+
+/// UDP payload through the relay, both directions together.
+struct LinkTraffic
+{
+    std::uint64_t payload_bytes{0};
+    std::uint64_t datagrams{0};
+};
+
+/// Two networks and the relay between them (tests/relay). Requires root and /dev/net/tun.
+class RelayedNetworks
+{
+public:
+    [[nodiscard]] static RelayedNetworks make(const LinkManner& manner,
+                                              const std::filesystem::path& folder);
+
+    [[nodiscard]] const NetworkEnd& server() const { return server_; }
+    [[nodiscard]] const NetworkEnd& controller() const { return controller_; }
+    [[nodiscard]] LinkTraffic traffic();
+
+private:
+    explicit RelayedNetworks(Program relay) : relay_(std::move(relay)) {}
+
+    Program relay_;
+    NetworkEnd server_;
+    NetworkEnd controller_;
+};
+
+inline constexpr std::chrono::seconds kStartTimeout{60};
+
+/// DDS domain of this process and its programs, very likely unused by others on this machine.
+[[nodiscard]] std::uint32_t dds_domain();
+
+/// Starts one of our programs at an end, in our DDS domain. Its output goes to a file with its name
+/// in the folder.
+[[nodiscard]] Program start_at(const NetworkEnd& end, const std::string& name,
+                               const std::filesystem::path& folder,
+                               const std::vector<std::string>& arguments);
+
+/// Starts spm_publish with this scene as "model" and waits until it is ready.
+[[nodiscard]] Program publish(const Scene& scene, const NetworkEnd& end,
+                              const std::filesystem::path& folder);
+
+struct ChildOutcome
+{
+    std::string text; ///< Return value of the work.
+    /// Peak of resident memory, inherited memory included; 0 if the system does not report it.
+    std::uint64_t peak_bytes{0};
+};
+
+/// Runs `work` in a child process and waits for it, so that its memory peak is its own. Its changes
+/// are not visible to the caller, which must have no other threads. A failure if the work has one,
+/// throws or is ended by a signal, or if the system grants no process.
+[[nodiscard]] ChildOutcome run_in_child(const std::function<std::string()>& work);
 
 } // namespace tactus::bench

@@ -5,31 +5,174 @@
 /// separate loopback network.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "tests/bench/child_process.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/own_network.hpp"
 #include "tests/bench/program.hpp"
-#include "tests/bench/published.hpp"
-#include "tests/bench/relayed_networks.hpp"
-#include "tests/bench/scene_cases.hpp"
-#include "tests/bench/showing_server.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/bench/suites.hpp"
+#include "transport/dds/dds_server.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <memory>
+#include <net/if.h>
+#include <sched.h>
 #include <string>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <thread>
+#include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace tactus::bench
 {
-
 namespace
 {
+
+/// Model server in its own thread, which shows objects and moves some of them 100 times a second.
+class ShowingServer
+{
+public:
+    /// Serves these files as "model-0" and so on; the objects in the scene "bench" show them in
+    /// turn.
+    [[nodiscard]] static std::unique_ptr<ShowingServer>
+    start(std::uint32_t domain, const std::vector<std::filesystem::path>& files,
+          std::uint32_t objects);
+    ~ShowingServer();
+    ShowingServer(const ShowingServer&) = delete;
+    ShowingServer& operator=(const ShowingServer&) = delete;
+
+    /// Number of objects that move from now on, the first ones.
+    void move(std::uint32_t objects) { moving_ = objects; }
+
+private:
+    explicit ShowingServer(std::unique_ptr<dds::DdsServer> server) : server_(std::move(server)) {}
+    void run();
+
+    std::unique_ptr<dds::DdsServer> server_;
+    std::atomic<std::uint32_t> moving_{0};
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+/// Moves this process and its future children to a network namespace with a loopback interface
+/// only. The caller must have no other threads. A failure if the system does not permit it.
+void enter_own_network()
+{
+    const auto refuse = [](const char* what)
+    { throw Failure(fmt::format("no network of its own: {}: {}", what, std::strerror(errno))); };
+    if (::unshare(CLONE_NEWNET) != 0)
+    {
+        refuse("unshare");
+    }
+    const int any = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    ifreq loopback{};
+    std::strcpy(loopback.ifr_name, "lo");
+    const bool is_read = any >= 0 && ::ioctl(any, SIOCGIFFLAGS, &loopback) == 0;
+    loopback.ifr_flags = static_cast<short>(loopback.ifr_flags | IFF_UP);
+    const bool is_up = is_read && ::ioctl(any, SIOCSIFFLAGS, &loopback) == 0;
+    ::close(any);
+    if (!is_up)
+    {
+        refuse("loopback");
+    }
+}
+
+/// Bytes sent over it so far: each datagram once, with its headers.
+std::uint64_t loopback_bytes()
+{
+    std::ifstream file("/proc/self/net/dev");
+    std::uint64_t bytes = 0;
+    for (std::string word; file >> word;)
+    {
+        if (word == "lo:")
+        {
+            file >> bytes;
+            break;
+        }
+    }
+    return bytes;
+}
+
+constexpr std::chrono::milliseconds kMoveEvery{10};
+constexpr double kStep_m = 0.001; ///< 0.1 m/s.
+
+/// Grid position.
+Pose place_of(std::uint32_t object)
+{
+    Pose pose;
+    pose.translation_m = {0.2 * (object % 16), 0.2 * (object / 16 % 16), 0.2 * (object / 256)};
+    return pose;
+}
+
+std::unique_ptr<ShowingServer> ShowingServer::start(std::uint32_t domain,
+                                                    const std::vector<std::filesystem::path>& files,
+                                                    std::uint32_t objects)
+{
+    std::vector<dds::PublishedModel> models;
+    for (const std::filesystem::path& file : files)
+    {
+        auto store = needed(ModelStore::open(file));
+        models.push_back({fmt::format("model-{}", models.size()), std::move(store)});
+    }
+    auto made = needed(dds::DdsServer::create(domain, std::move(models), {}, "bench"));
+    std::unique_ptr<ShowingServer> showing(new ShowingServer(std::move(made)));
+    dds::DdsServer& server = *showing->server_;
+    for (std::uint32_t i = 0; i < objects; ++i)
+    {
+        ShownObject object;
+        object.name = fmt::format("object-{}", i);
+        object.model = server.models()[i % server.models().size()].store().hash();
+        object.pose = place_of(i);
+        needed(server.objects().show(object));
+    }
+    showing->thread_ = std::thread([&self = *showing] { self.run(); });
+    return showing;
+}
+
+ShowingServer::~ShowingServer()
+{
+    stop_ = true;
+    if (thread_.joinable())
+    {
+        thread_.join();
+    }
+}
+
+void ShowingServer::run()
+{
+    using Clock = std::chrono::steady_clock;
+    auto due = Clock::now();
+    std::uint32_t steps = 0;
+    while (!stop_)
+    {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(due - Clock::now());
+        server_->wait(std::max(left, std::chrono::milliseconds(0)));
+        if (Clock::now() >= due)
+        {
+            due += kMoveEvery;
+            ++steps;
+            const std::uint32_t moving = moving_;
+            for (std::uint32_t i = 0; i < moving; ++i)
+            {
+                Pose pose = place_of(i);
+                pose.translation_m[2] += kStep_m * (steps % 100);
+                static_cast<void>(server_->objects().move(i, pose));
+            }
+        }
+        server_->step();
+    }
+}
 
 using Json = nlohmann::json;
 using Files = std::vector<std::filesystem::path>;

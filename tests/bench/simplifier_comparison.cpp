@@ -5,20 +5,289 @@
 /// faces.
 
 #include "host_tools/mesh/prepare.hpp"
+#include "host_tools/mesh/triangle_mesh.hpp"
 #include "host_tools/simplify/simplify.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "tests/bench/bench_row.hpp"
 #include "tests/bench/encoder_cases.hpp"
-#include "tests/bench/feature_edges.hpp"
 #include "tests/bench/measuring.hpp"
-#include "tests/bench/peers/mesh_simplifier.hpp"
-#include "tests/bench/surface_error.hpp"
+#include "tests/bench/peers/all_peers.hpp"
+#include "tests/bench/scenes.hpp"
+#include "tests/shared/brute_force.hpp"
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/random.hpp"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
 #include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
 
 namespace tactus::bench
 {
-
 namespace
 {
+
+struct FeatureLine
+{
+    Vec3 from{0.0, 0.0, 0.0};
+    Vec3 to{0.0, 0.0, 0.0};
+};
+
+/// Distance between two surfaces, in the meshes' unit.
+struct SurfaceError
+{
+    double rms{0.0};
+    double max{0.0};
+};
+
+/// Measures other meshes against one: as many samples of each surface to the other surface; root of
+/// the mean square and maximum. Corners are rounded to float.
+class SurfaceReference
+{
+public:
+    SurfaceReference(const TriangleMesh& original, std::uint32_t samples);
+    SurfaceReference(const SurfaceReference&) = delete;
+    SurfaceReference& operator=(const SurfaceReference&) = delete;
+
+    /// Error of the other mesh; about a microsecond a sample.
+    [[nodiscard]] SurfaceError error_of(const TriangleMesh& other) const;
+
+private:
+    std::vector<Vec3> samples_;
+    std::vector<test::Face> faces_;
+    test::FaceTree tree_;
+};
+
+/// Side of a face, ends in ascending order: sides of one edge differ only in the face.
+struct Side
+{
+    std::uint32_t low;
+    std::uint32_t high;
+    std::uint32_t face;
+
+    [[nodiscard]] bool is_same_edge(const Side& other) const
+    {
+        return low == other.low && high == other.high;
+    }
+};
+
+Vec3 place(const TriangleMesh& mesh, std::uint32_t vertex)
+{
+    const std::array<double, 3>& at = mesh.positions[vertex];
+    return {at[0], at[1], at[2]};
+}
+
+Vec3 normal(const TriangleMesh& mesh, std::uint32_t face)
+{
+    const auto& [a, b, c] = mesh.faces[face];
+    return (place(mesh, b) - place(mesh, a)).cross(place(mesh, c) - place(mesh, a));
+}
+
+std::vector<Side> sorted_sides(const TriangleMesh& mesh)
+{
+    std::vector<Side> sides;
+    sides.reserve(3 * mesh.faces.size());
+    for (std::uint32_t face = 0; face < mesh.faces.size(); ++face)
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const auto [low, high] =
+                std::minmax({mesh.faces[face][i], mesh.faces[face][(i + 1) % 3]});
+            sides.push_back({low, high, face});
+        }
+    }
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b)
+              { return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face); });
+    return sides;
+}
+
+/// Edges that satisfy `is_wanted(sides)`.
+template <typename Condition>
+std::vector<FeatureLine> edges_where(const TriangleMesh& mesh, const Condition& is_wanted)
+{
+    const std::vector<Side> sides = sorted_sides(mesh);
+    std::vector<FeatureLine> edges;
+    for (auto begin = sides.begin(); begin != sides.end();)
+    {
+        const auto end = std::find_if_not(
+            begin, sides.end(), [&](const Side& side) { return side.is_same_edge(*begin); });
+        if (is_wanted(std::span(begin, end)))
+        {
+            edges.push_back({place(mesh, begin->low), place(mesh, begin->high)});
+        }
+        begin = end;
+    }
+    return edges;
+}
+
+double distance(const Vec3& point, const FeatureLine& segment)
+{
+    const Vec3 along = segment.to - segment.from;
+    const double squared = along.squaredNorm();
+    const double share =
+        squared > 0.0 ? std::clamp((point - segment.from).dot(along) / squared, 0.0, 1.0) : 0.0;
+    return (segment.from + share * along - point).norm();
+}
+
+double nearest_distance(const Vec3& point, const std::vector<FeatureLine>& segments)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const FeatureLine& segment : segments)
+    {
+        least = std::min(least, distance(point, segment));
+    }
+    return least;
+}
+
+/// Edges of a single face.
+std::vector<FeatureLine> border_edges(const TriangleMesh& mesh)
+{
+    return edges_where(mesh, [](std::span<const Side> sides) { return sides.size() == 1; });
+}
+
+/// Edges at which the surface turns by more than `angle_deg`, 0 .. 180; faces without an area do
+/// not count.
+std::vector<FeatureLine> sharp_edges(const TriangleMesh& mesh, double angle_deg)
+{
+    const double least_cosine = std::cos(angle_deg / 180.0 * std::numbers::pi);
+    const auto is_sharp = [&](std::span<const Side> sides)
+    {
+        const Vec3 first = normal(mesh, sides.front().face);
+        return std::any_of(sides.begin() + 1, sides.end(),
+                           [&](const Side& side)
+                           {
+                               const Vec3 other = normal(mesh, side.face);
+                               const double scale = first.norm() * other.norm();
+                               return first.dot(other) < least_cosine * scale;
+                           });
+    };
+    return edges_where(mesh, is_sharp);
+}
+
+/// Greatest distance of points of `lines` to the nearest of `others`. The points include the ends
+/// and are at most one `points`-th of the total length apart. Infinity without others, 0 without
+/// lines. The cost is the product of both counts.
+double largest_distance(const std::vector<FeatureLine>& lines,
+                        const std::vector<FeatureLine>& others, unsigned points)
+{
+    double length = 0.0;
+    for (const FeatureLine& line : lines)
+    {
+        length += (line.to - line.from).norm();
+    }
+    double largest = 0.0;
+    for (const FeatureLine& line : lines)
+    {
+        const Vec3 along = line.to - line.from;
+        const auto steps = static_cast<unsigned>(std::ceil(along.norm() * points / length));
+        for (unsigned step = 0; step <= steps; ++step)
+        {
+            const double share = steps == 0 ? 0.0 : static_cast<double>(step) / steps;
+            largest = std::max(largest, nearest_distance(line.from + share * along, others));
+        }
+    }
+    return largest;
+}
+
+using Corners = std::array<Vec3, 3>;
+
+Corners corners_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& face)
+{
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i)
+    {
+        const std::array<double, 3>& at = mesh.positions[face[i]];
+        corners[i] = Vec3(at[0], at[1], at[2]);
+    }
+    return corners;
+}
+
+double area_of(const Corners& corners)
+{
+    return 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+}
+
+/// Three independent values in 0 .. 1 for each index.
+double unit(std::uint64_t seed, std::uint64_t index, std::uint64_t which)
+{
+    return 0.5 + 0.5 * test::signed_unit(seed, 3 * index + which);
+}
+
+Vec3 point_on(const Corners& corners, double s, double t)
+{
+    if (s + t > 1.0)
+    {
+        s = 1.0 - s;
+        t = 1.0 - t;
+    }
+    return corners[0] + s * (corners[1] - corners[0]) + t * (corners[2] - corners[0]);
+}
+
+void add_distances(const std::vector<Vec3>& points, const test::FaceTree& tree, SurfaceError& sum)
+{
+    for (const Vec3& point : points)
+    {
+        const double distance = tree.nearest(point).distance_m;
+        sum.rms += distance * distance;
+        sum.max = std::max(sum.max, distance);
+    }
+}
+
+/// `count` points, at least one, of a mesh with an area: one at a random place of each equal share
+/// of the area.
+std::vector<Vec3> surface_samples(const TriangleMesh& mesh, std::uint32_t count, std::uint64_t seed)
+{
+    double area = 0.0;
+    for (const auto& face : mesh.faces)
+    {
+        area += area_of(corners_of(mesh, face));
+    }
+    std::vector<Vec3> samples;
+    samples.reserve(count);
+    double passed = 0.0; // Area of the faces before.
+    const auto next = [&]
+    {
+        const std::size_t index = samples.size();
+        return (static_cast<double>(index) + unit(seed, index, 0)) / count * area;
+    };
+    for (const auto& face : mesh.faces)
+    {
+        const Corners corners = corners_of(mesh, face);
+        passed += area_of(corners);
+        while (samples.size() < count && next() <= passed)
+        {
+            const std::size_t index = samples.size();
+            samples.push_back(point_on(corners, unit(seed, index, 1), unit(seed, index, 2)));
+        }
+    }
+    return samples;
+}
+
+SurfaceReference::SurfaceReference(const TriangleMesh& original, std::uint32_t samples)
+    : samples_(surface_samples(original, samples, kSeed)), faces_(faces_of(original)), tree_(faces_)
+{
+}
+
+SurfaceError SurfaceReference::error_of(const TriangleMesh& other) const
+{
+    const auto count = static_cast<std::uint32_t>(samples_.size());
+    const std::vector<Vec3> others = surface_samples(other, count, kSeed + 1);
+    const std::vector<test::Face> faces = faces_of(other);
+    SurfaceError error;
+    add_distances(samples_, test::FaceTree(faces), error);
+    add_distances(others, tree_, error);
+    error.rms = std::sqrt(error.rms / static_cast<double>(samples_.size() + others.size()));
+    return error;
+}
 
 /// Target of the simplification: one face of this many.
 constexpr std::uint32_t kOneFaceIn = 100;
@@ -56,11 +325,11 @@ SimplifiedMesh simplify_by_us(const QuantisedMesh& mesh, std::uint32_t faces)
 const MeshSimplifier kOurs{"Tactus", simplify_by_us<1>};
 const MeshSimplifier kOursOnTwo{"Tactus, 2 threads", simplify_by_us<2>};
 
-std::vector<Segment> edges_of(const TriangleMesh& mesh, Feature feature)
+std::vector<FeatureLine> edges_of(const TriangleMesh& mesh, Feature feature)
 {
     return feature == Feature::borders       ? border_edges(mesh)
            : feature == Feature::sharp_edges ? sharp_edges(mesh, kSharpAngle_deg)
-                                             : std::vector<Segment>{};
+                                             : std::vector<FeatureLine>{};
 }
 
 /// FNV-1a over the faces' corners, so that the timed result is used.
@@ -108,7 +377,7 @@ private:
     std::string scene_;
     const QuantisedMesh& mesh_;
     TriangleMesh original_;
-    std::vector<Segment> features_;
+    std::vector<FeatureLine> features_;
     double diagonal_quanta_;
     std::uint32_t samples_; ///< Samples of each surface.
     SurfaceReference reference_;
@@ -178,7 +447,7 @@ SurfaceError Comparison::add_quality(CaseRows& rows, const TriangleMesh& mesh) c
     rows.add("max", error.max / unit, "1e-3 diag");
     if (!features_.empty())
     {
-        const std::vector<Segment> kept = edges_of(mesh, context_.mesh.feature);
+        const std::vector<FeatureLine> kept = edges_of(mesh, context_.mesh.feature);
         rows.add("features", largest_distance(features_, kept, kFeaturePoints) / unit, "1e-3 diag");
     }
     return error;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rt_core/query/surface_query.hpp"
-#include "tests/bench/peers/point_query.hpp"
+#include "tests/bench/peers/all_peers.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/shared/frame_rig.hpp"
 

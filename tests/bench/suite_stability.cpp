@@ -5,13 +5,12 @@
 /// measured; a violated claim causes exit code 1.
 
 #include "host_tools/shapes/shapes.hpp"
+#include "tests/bench/bench_report.hpp"
 #include "tests/bench/suites.hpp"
-#include "tests/bench/trial_rows.hpp"
 #include "tests/shared/kernel_trial.hpp"
 #include "tests/shared/worst_shapes.hpp"
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/day_trial.hpp"
-#include "tests/stability/force_twin_trial.hpp"
 #include "tests/stability/garbage_trial.hpp"
 #include "tests/stability/mesh_trial.hpp"
 #include "tests/stability/pop_through_trial.hpp"

@@ -15,13 +15,13 @@ namespace
 {
 
 constexpr std::uint32_t kFaces = 200'000;
-constexpr std::uint32_t kBaseFaces = 500;
+constexpr std::uint32_t kStarvedBaseFaces = 500;
 
 void run_starve_case(const CaseContext& context, const test::GreedyCase& greedy)
 {
     const PinnedCore pinned(context.options.core);
-    const test::TestModel& model =
-        test::test_model("bumpy-200k", make_shape(Shape::bumpy_sphere, kFaces).value(), kBaseFaces);
+    const test::TestModel& model = test::test_model(
+        "bumpy-200k", make_shape(Shape::bumpy_sphere, kFaces).value(), kStarvedBaseFaces);
     const std::uint32_t frames = context.options.frames_or(4'000, 1'000);
     const test::GreedyFigures figures = test::run_greedy(model, greedy, frames, kSeed);
     if (!figures.broken.empty())

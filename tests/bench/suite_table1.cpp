@@ -5,21 +5,92 @@
 /// the fully refined AB-Tree over each.
 
 #include "host_tools/shapes/shapes.hpp"
+#include "rt_core/spm/ids.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/suites.hpp"
-#include "tests/shared/binary_ab_tree.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace tactus::bench
 {
-
 namespace
 {
+
+/// The 3DIM 2005 paper's AB-Tree: a binary tree over all faces of the finest mesh, one face a leaf,
+/// in which every node is inactive, active or deformed. When a face becomes active, its leaf and
+/// all nodes above it are deformed until refit(). Shares only the order of the faces with the
+/// 8-wide tree. No boxes.
+class BinaryAbTree
+{
+public:
+    enum class Status : std::uint8_t
+    {
+        inactive,
+        active,
+        deformed,
+    };
+    static constexpr std::uint32_t kNone = 0xFFFF'FFFFU;
+
+    /// Builds from the faces of the finest mesh in the order of their paths, each range halved in
+    /// the middle, so that all leaves are on the two lowest levels.
+    explicit BinaryAbTree(std::span<const FaceId> faces)
+    {
+        nodes_.reserve(2 * faces.size());
+        build(faces, kNone);
+    }
+
+    void set(FaceId face)
+    {
+        for (std::uint32_t node = leaf_of(face); node != kNone; node = nodes_[node].parent)
+        {
+            nodes_[node].status = Status::deformed;
+        }
+    }
+    void refit()
+    {
+        for (Node& node : nodes_)
+        {
+            node.status = node.status == Status::deformed ? Status::active : node.status;
+        }
+    }
+
+    [[nodiscard]] Status status(std::uint32_t node) const { return nodes_[node].status; }
+    [[nodiscard]] std::uint32_t parent(std::uint32_t node) const { return nodes_[node].parent; }
+    /// Leaf of a face, from the index list.
+    [[nodiscard]] std::uint32_t leaf_of(FaceId face) const { return leaf_of_[face.value]; }
+
+private:
+    struct Node
+    {
+        std::uint32_t parent{kNone};
+        Status status{Status::inactive};
+    };
+
+    void build(std::span<const FaceId> faces, std::uint32_t parent)
+    {
+        const auto index = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.push_back({parent});
+        if (faces.size() > 1)
+        {
+            build(faces.first(faces.size() / 2), index);
+            build(faces.subspan(faces.size() / 2), index);
+            return;
+        }
+        leaf_of_.resize(std::max(leaf_of_.size(), std::size_t{faces[0].value} + 1), kNone);
+        leaf_of_[faces[0].value] = index;
+    }
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> leaf_of_;
+};
 
 constexpr SceneSource kCow{"cow", "cow.obj", 0, 5'804};
 constexpr std::uint32_t kSmallBunnyFaces = 37'576;
@@ -84,7 +155,7 @@ std::uint32_t height_below(const AbTree& tree, TreeRef ref)
 std::optional<std::uint32_t> binary_height(Model& model)
 {
     const std::vector<FaceId> order = test::faces_by_path(model);
-    test::BinaryAbTree tree(order);
+    BinaryAbTree tree(order);
     for (std::uint32_t i = 0; i < model.forest.capacity(); ++i)
     {
         if (const FaceId face = model.forest.face(PrimId{i}).id; !face.is_none())
@@ -98,9 +169,9 @@ std::optional<std::uint32_t> binary_height(Model& model)
     {
         std::uint32_t depth = 0;
         std::uint32_t node = tree.leaf_of(face);
-        for (; tree.parent(node) != test::BinaryAbTree::kNone; node = tree.parent(node))
+        for (; tree.parent(node) != BinaryAbTree::kNone; node = tree.parent(node))
         {
-            if (tree.status(node) != test::BinaryAbTree::Status::active)
+            if (tree.status(node) != BinaryAbTree::Status::active)
             {
                 return std::nullopt;
             }

@@ -5,27 +5,145 @@
 /// against the whole object, its base mesh alone, and the object refined locally at the tool.
 
 #include "rt_core/math/vec3.hpp"
+#include "rt_core/records/frame_output.hpp"
 #include "tests/bench/measuring.hpp"
 #include "tests/bench/mesh_touch.hpp"
-#include "tests/bench/pair_replay.hpp"
-#include "tests/bench/pair_trial.hpp"
-#include "tests/bench/peer_cases.hpp"
+#include "tests/bench/scenes.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/suites.hpp"
+#include "tests/shared/frame_rig.hpp"
+#include "tests/stability/whole_model.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace tactus::bench
 {
-
 namespace
 {
 
+/// Query-only mesh tool, which follows the device pose and renders no force.
+struct PairRun
+{
+    const Scene& tool;
+    const Scene& object;
+    std::vector<ToolState> places; ///< Poses in the frame of the object's model.
+    double radius_m{0.0};          ///< Radius within which distances must be exact.
+    double speed_m_per_s{0.0};     ///< Greatest speed of a point of the tool.
+    std::size_t pool_bytes{0};     ///< Pools of both models.
+    bool is_static{false};         ///< Both models are resident and refined before the first pose.
+};
+
+/// Times and answers of the frames of a run.
+struct PairFrames
+{
+    std::array<LeastTimes, kStages> stage_us;
+    LeastTimes sum_us; ///< T = T_R + T_B + T_Q + T_L.
+    std::vector<PairOutput> answers;
+    WorkCounters work;
+    std::uint32_t active_faces{0}; ///< Most active faces of the object.
+    std::uint64_t meeting_pairs{0};
+    std::uint64_t hash{0}; ///< Hash of answers and states.
+};
+
+/// Frames at the first place before the measurement, in which a local model is loaded and refined.
+constexpr std::uint32_t kPairLeadIn = 500;
+
+test::RigOptions options_of(const PairRun& run)
+{
+    test::RigOptions options;
+    options.pool_bytes = run.pool_bytes;
+    options.static_when_it_fits = run.is_static;
+    ToolSpec tool;
+    tool.radius_m = run.radius_m;
+    tool.speed_max_m_per_s = run.speed_m_per_s;
+    tool.core = MeshCore{ModelId{1}};
+    tool.query_only = true;
+    tool.wants_pairs = true;
+    options.tools = {tool};
+    return options;
+}
+
+std::uint64_t bits_of(const FrameOutput& output)
+{
+    const PairOutput& pair = output.pairs[0];
+    return std::bit_cast<std::uint64_t>(pair.lower_m) +
+           3 * std::bit_cast<std::uint64_t>(pair.upper_m) + 5 * pair.mesh->meeting.size() +
+           7 * output.models[0].state_hash + 11 * output.models[1].state_hash;
+}
+
+void keep(const StageTimer& timer, std::size_t frame, PairFrames& frames)
+{
+    double sum_us = 0.0;
+    for (const Stage stage : {Stage::load, Stage::refine, Stage::refit, Stage::query})
+    {
+        frames.stage_us[static_cast<std::size_t>(stage)].keep(frame, timer.us(stage));
+        sum_us += timer.us(stage);
+    }
+    frames.sum_us.keep(frame, sum_us);
+}
+
+/// Runs once; returns the hash.
+std::uint64_t replay_once(const PairRun& run, PairFrames& frames)
+{
+    test::FrameRig rig({&run.object.model, &run.tool.model}, options_of(run));
+    if (run.is_static)
+    {
+        test::refine_fully(run.object.model.name, [&](const Budgets& budgets)
+                           { return rig.step(std::span(run.places).first(1), budgets); });
+    }
+    for (std::uint32_t i = 0; i < kPairLeadIn; ++i)
+    {
+        rig.step(std::span(run.places).first(1), {});
+    }
+    const bool is_first = frames.answers.empty();
+    StageTimer timer;
+    std::uint64_t hash = 0;
+    for (std::size_t i = 0; i < run.places.size(); ++i)
+    {
+        rig.deliver();
+        const FrameInput input = rig.input(std::span(run.places).subspan(i, 1), {});
+        timer.begin();
+        const FrameOutput output = rig.frame().run(input, timer.mark());
+        keep(timer, i, frames);
+        hash += bits_of(output) * (2 * i + 1);
+        if (is_first)
+        {
+            frames.answers.push_back(output.pairs[0]);
+            frames.work += output.work;
+            frames.meeting_pairs += output.pairs[0].mesh->meeting.size();
+            frames.active_faces = std::max(frames.active_faces, rig.model().forest.active_faces());
+        }
+    }
+    return hash;
+}
+
+/// Replays a run `passes` times, after some frames at its first pose. A failure if passes differ.
+PairFrames replay_pair(const PairRun& run, std::uint32_t passes)
+{
+    PairFrames frames;
+    frames.stage_us.fill(LeastTimes(run.places.size()));
+    frames.sum_us = LeastTimes(run.places.size());
+    for (std::uint32_t pass = 0; pass < passes; ++pass)
+    {
+        const std::uint64_t hash = replay_once(run, frames);
+        if (pass > 0 && hash != frames.hash)
+        {
+            throw Failure(run.object.model.name + ": replays gave other answers");
+        }
+        frames.hash = hash;
+    }
+    return frames;
+}
+
 /// Speed limit, above the motion's slide and rotation together.
-constexpr double kFastest_diag_per_s = 0.5;
+constexpr double kProbeFastest_diag_per_s = 0.5;
 /// Memory of the tool's model and of tables.
 constexpr std::size_t kToolBytes = 8 * kMiB;
 constexpr double kActiveGoal_percent = 5.0;
@@ -102,7 +220,7 @@ private:
                     object,
                     places_,
                     kMeshSkin_diag * diagonal_m,
-                    kFastest_diag_per_s * diagonal_m,
+                    kProbeFastest_diag_per_s * diagonal_m,
                     object_bytes + (is_static ? kToolBytes : 0),
                     is_static};
         for (ToolState& place : run.places)

@@ -21,8 +21,6 @@ struct Suite
     std::vector<Case> (*cases)();
     /// True if a missed goal always causes exit code 1, even without a request.
     bool always_checks{false};
-    /// Rows that are printed unless all are requested.
-    Figures printed{Figures::all};
 };
 
 [[nodiscard]] Suite counts_suite();
@@ -41,6 +39,10 @@ struct Suite
 [[nodiscard]] Suite table1_suite();
 [[nodiscard]] Suite table2_suite();
 [[nodiscard]] Suite worst_suite();
+
+/// Cases of the suite scene: cost of a model server's objects on the wire and for joining
+/// controllers.
+[[nodiscard]] std::vector<Case> scene_wire_cases();
 
 /// All suites in the order of printing.
 [[nodiscard]] std::vector<Suite> all_suites();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/shapes/shapes.hpp"
-#include "tests/bench/bumpy_sphere.hpp"
+#include "tests/bench/force_rows.hpp"
 #include "tests/bench/scenes.hpp"
 #include "tests/shared/face_tree.hpp"
 #include "tests/shared/random.hpp"

@@ -11,11 +11,9 @@
 ///
 /// Edited bytes get a new checksum, or they would not be parsed.
 #include "rt_core/spm/chunk_coding.hpp"
-#include "tests/fuzz/chunk_edit.hpp"
-#include "tests/fuzz/coded_model.hpp"
 #include "tests/fuzz/law.hpp"
 #include "tests/fuzz/link_desk.hpp"
-#include "tests/fuzz/record_laws.hpp"
+#include "tests/fuzz/model_laws.hpp"
 #include "tests/fuzz/seal_model.hpp"
 
 #include <algorithm>

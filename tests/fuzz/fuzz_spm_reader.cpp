@@ -7,7 +7,6 @@
 #include "rt_core/spm/chunk_coding.hpp"
 #include "tests/fuzz/law.hpp"
 #include "tests/fuzz/model_laws.hpp"
-#include "tests/fuzz/record_laws.hpp"
 #include "tests/fuzz/scratch_file.hpp"
 #include "tests/fuzz/seal_model.hpp"
 #include "transport/store/model_store.hpp"

@@ -3,10 +3,13 @@
 #pragma once
 
 #include "rt_core/base/arena.hpp"
+#include "rt_core/spm/coded_record.hpp"
+#include "rt_core/spm/header.hpp"
 #include "rt_core/spm/linker.hpp"
-#include "tests/fuzz/coded_model.hpp"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +17,59 @@
 
 namespace tactus::fuzz
 {
+
+/// Pieces of a small model as this build codes them, so that fuzzing always uses the present
+/// version.
+struct CodedModel
+{
+    std::vector<std::byte> header_bytes;
+    ModelHeader header; ///< View of header_bytes.
+    std::vector<std::byte> base;
+    std::vector<std::vector<std::byte>> chunks;
+};
+
+/// Generated shapes. More faces mean more chunks: one for each 128.
+enum class Lump : std::uint32_t
+{
+    closed, ///< Bumpy sphere of 720 faces.
+    open,   ///< Terrain of about 800 faces, with a border.
+};
+
+/// Model made by the encoder, once a process. Ends the program if a step refuses.
+[[nodiscard]] const CodedModel& coded_model(Lump lump);
+
+/// Change of a chunk: of its bytes or of a record parsed from it.
+struct Edit
+{
+    enum Kind : std::uint32_t
+    {
+        set_byte,
+        flip_bit,
+        cut,
+        insert_byte,
+        set_anchor, ///< First kind of a change of records.
+        set_place,
+        set_fan,
+        set_other,
+        set_residual,
+        set_error,
+        set_bucket,
+        kinds
+    };
+
+    std::uint32_t chunk{0};
+    Kind kind{set_byte};
+    std::uint32_t place{0};
+    std::uint32_t value{0};
+};
+
+/// Applies an edit of bytes; no effect for one of a record. `bytes` is never empty.
+void edit_bytes(const Edit& edit, std::vector<std::byte>& bytes);
+
+/// Changes a record as another chunk could code it, which reaches records that random bytes hardly
+/// produce; `place` / 64, below 1024, is the new number, possibly one that no chunk codes. No
+/// effect for an edit of bytes.
+void edit_record(const Edit& edit, const ModelCounts& counts, CodedRecord& record);
 
 /// Transport thread's view of one model, with a slot for each chunk: the parsed pages that an input
 /// may add and remove, and the linker over them. After each step the laws of linking are checked

@@ -5,14 +5,24 @@
 #include "rt_core/spm/base_mesh.hpp"
 #include "rt_core/spm/header.hpp"
 #include "rt_core/spm/index_page.hpp"
+#include "rt_core/spm/page.hpp"
 
 #include <cstddef>
 #include <span>
 
 /// Laws of every piece that a parser accepts: docs/internals/spm-format.md, sections 2, 6, 8,
 /// written a second time, with the numbers of that page.
+/// Laws of every record that a parser accepts and of every linked one:
+/// docs/internals/spm-format.md, sections 6 and 8, written a second time, with its numbers.
 namespace tactus::fuzz
 {
+
+/// True for a lawful page after parsing, with unlinked records.
+[[nodiscard]] bool is_lawful_parsed_page(const ModelHeader& header, ChunkId id, const Page& page);
+
+/// True for a lawful record after linking.
+[[nodiscard]] bool is_lawful_linked(const ModelHeader& header, RecordId id,
+                                    const VsplitRecord& record);
 
 [[nodiscard]] inline bool is_in(double value, double low, double high)
 {

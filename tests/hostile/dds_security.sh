@@ -6,12 +6,8 @@
 # reads nothing that is for another one, a viewer only telemetry, even if their own plugin checks
 # nothing. A server is identified by its certificate.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
+source "$(dirname "$0")/strangers.sh"
 readonly intruder=$4 lax=$5
-readonly plain='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
-multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
-<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
-<LeaseDuration>1 s</LeaseDuration><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
-</CycloneDDS>'
 command -v openssl >/dev/null || {
     echo 'skipped: openssl is needed to forge documents'
     exit 77
@@ -22,7 +18,7 @@ readonly station=machines/station hand=machines/hand-1 other=machines/hand-2 des
 # intrude KEYS LIBRARY read|write PARTITION: in intruder.log; its exit code is in $intruded_with.
 intrude() {
     intruded_with=0
-    CYCLONEDDS_URI=$plain "$intruder" "$domain" "$@" 3 >intruder.log 2>&1 || intruded_with=$?
+    CYCLONEDDS_URI=$stranger_uri "$intruder" "$domain" "$@" 3 >intruder.log 2>&1 || intruded_with=$?
 }
 # intrude_until PATTERN ARGUMENT...: the same, again until a line of intruder.log matches, at most
 # ten times. On a busy machine a handshake can take longer than one attempt.
@@ -44,7 +40,7 @@ sees_nothing() {
 sees_nothing_in() {
     local at intruders=()
     for at in $(seq 3 $#); do
-        CYCLONEDDS_URI=$plain "$intruder" "$domain" "$1" "$lax" "$2" "${!at}" 3 \
+        CYCLONEDDS_URI=$stranger_uri "$intruder" "$domain" "$1" "$lax" "$2" "${!at}" 3 \
             >"intruder.$at.log" 2>&1 &
         intruders+=($!)
     done
@@ -138,10 +134,7 @@ intrude_until "^catalogue $samples" "$other" - read ''
 stop_publisher
 
 # A restarted server has the same certificate and counts as the same one, without --failover.
-cat >bumpy.gltf <<'GLTF'
-{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
-    {"name": "toy", "extras": {"tactus": {"model": "bumpy.spm"}}}]}
-GLTF
+scene bumpy.gltf 'toy bumpy 0'
 start_publisher bumpy.gltf --scene toy --watch
 expect 2 'is not shown' "$hrtc" --domain "$domain" --scene "toy@$(uname -n)" --allow-no-rt \
     --wait 2 "${controller_security[@]}"

@@ -7,12 +7,8 @@
 flood=$(cd "$(dirname "$0")" && pwd)/datagrams.py
 readonly flood
 source "$(dirname "$0")/../integration/hrtc/common.sh"
+source "$(dirname "$0")/strangers.sh"
 readonly attacker=$4 seconds=${TACTUS_FLOOD_SECONDS:-4}
-readonly attacker_uri='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
-multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
-<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
-<LeaseDuration>1 s</LeaseDuration><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
-</CycloneDDS>'
 
 # Processor time of each thread of server and controller during the flood, as a share of one
 # processor, and datagrams that the system delivered and dropped in this network namespace.
@@ -58,17 +54,6 @@ for who, pid in pids.items():
     found[who]["mib"] = int(peak.split()[1]) / 1024
 json.dump(found, open(sys.argv[1], "w"))
 PYTHON
-
-udp_ports() { # udp_ports ID: prints the UDP ports of the process.
-    local link inode
-    for link in "/proc/$1/fd/"*; do
-        inode=$(readlink "$link" || true)
-        [[ "$inode" == 'socket:['* ]] || continue
-        inode=${inode#'socket:['}
-        awk -v inode="${inode%]}" '$10 == inode { sub(/.*:/, "", $2); print $2 }' /proc/net/udp
-    done | while read -r hex; do echo $((16#$hex)); done
-}
-memory_kib() { awk '$1 == "VmHWM:" { print $2 }' "/proc/$1/status"; }
 
 row() { # row KIND: prints a row from report.json and meter.json.
     python3 - "$1" <<'PYTHON'
@@ -116,7 +101,7 @@ by_dds() { # by_dds KIND: the attacker's flood at its greatest rate; none: no at
     if [[ "$1" != none ]]; then
         [[ "$1" != rtps_* ]] \
             || mapfile -t ports < <(udp_ports "$publisher" && udp_ports "$controller")
-        CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" $((seconds + 1)) "$1@0" "${ports[@]}" \
+        CYCLONEDDS_URI=$stranger_uri "$attacker" "$domain" $((seconds + 1)) "$1@0" "${ports[@]}" \
             >attacker.log 2>&1 &
         attacking=$!
         started+=("$attacking")

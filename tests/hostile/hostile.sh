@@ -4,31 +4,14 @@
 # attacks a server and a controller in contact; both continue unaffected, and name it. A flooded
 # server still has capacity for another controller, which joins meanwhile.
 source "$(dirname "$0")/../integration/hrtc/common.sh"
+source "$(dirname "$0")/strangers.sh"
 readonly attacker=$4 attack=$5
-# The attacker is discovered by all and discovers servers.
-readonly attacker_uri='<CycloneDDS><Domain id="any"><General><Interfaces><NetworkInterface name="lo"
-multicast="false"/></Interfaces><AllowMulticast>false</AllowMulticast></General><Discovery>
-<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>9</MaxAutoParticipantIndex>
-<LeaseDuration>1 s</LeaseDuration><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
-</CycloneDDS>'
 
-# udp_ports ID: prints the UDP ports of the process.
-udp_ports() {
-    local link inode
-    for link in "/proc/$1/fd/"*; do
-        inode=$(readlink "$link" || true)
-        [[ "$inode" == 'socket:['* ]] || continue
-        inode=${inode#'socket:['}
-        awk -v inode="${inode%]}" \
-            '$10 == inode { sub(/.*:/, "", $2); print $2 }' /proc/net/udp
-    done | while read -r hex; do echo $((16#$hex)); done
-}
 only_printable() { # only_printable FILE
     if LC_ALL=C grep -q '[^[:print:][:space:]]' "$1"; then
         fault "$1 holds what is not text"
     fi
 }
-memory_kib() { awk '$1 == "VmHWM:" { print $2 }' "/proc/$1/status"; }
 
 # Large enough that pieces arrive constantly; it moves, so the force follows its poses.
 model bumpy-sphere-20000 bumpy.spm
@@ -43,7 +26,7 @@ wait_for_line publish.log 'controller victim subscribed'
 wait_for_contact publish.log victim
 ports=()
 [[ "$attack" != rtps_* ]] || mapfile -t ports < <(udp_ports "$publisher" && udp_ports "$controller")
-CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" 0 "$attack" "${ports[@]}" >attacker.log 2>&1 &
+CYCLONEDDS_URI=$stranger_uri "$attacker" "$domain" 0 "$attack" "${ports[@]}" >attacker.log 2>&1 &
 attacking=$!
 started+=("$attacking")
 if [[ "$attack" == *_flooded* ]]; then
@@ -62,7 +45,7 @@ least=10
 crowd='[0-9]{4,} participants are on this domain'
 forge_more() { # The kernel drops the part of a flood that exceeds its buffers.
     grep -Eqs "$crowd" publish.log && return
-    CYCLONEDDS_URI=$attacker_uri "$attacker" "$domain" 0 "$attack" "${ports[@]}" \
+    CYCLONEDDS_URI=$stranger_uri "$attacker" "$domain" 0 "$attack" "${ports[@]}" \
         >attacker.log 2>&1 || fail "the attacker ended badly: $(cat attacker.log)"
     return 1
 }

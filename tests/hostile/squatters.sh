@@ -8,10 +8,7 @@ source "$(dirname "$0")/force_figures.sh"
 readonly squatter=$4 lying_server=$5 attack=$6
 
 model bumpy-sphere-20000 bumpy.spm
-cat >toy.gltf <<'GLTF'
-{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
-    {"name": "toy", "extras": {"tactus": {"model": "bumpy.spm"}}}]}
-GLTF
+scene toy.gltf 'toy bumpy 0'
 # Name of a machine in DDS.
 machine=$(hostname)
 readonly machine

@@ -10,7 +10,6 @@ readonly view=$1/spm_view
 command -v curl >/dev/null || exit 77
 model torus-20000 torus.spm
 
-memory_kib() { awk '$1 == "VmHWM:" { print $2 }' "/proc/$1/status"; }
 attack() { python3 "$here/web_peers.py" "$@"; }
 get() { curl --silent --fail --max-time "$patience_s" "$1"; }
 

@@ -12,7 +12,7 @@
 #include "tests/shared/trial_length.hpp"
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/random_motion.hpp"
-#include "tests/stability/same_bits.hpp"
+#include "tests/stability/trial_terms.hpp"
 #include "tests/stability/whole_model.hpp"
 
 #include <gtest/gtest.h>

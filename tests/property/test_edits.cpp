@@ -16,7 +16,7 @@
 #include "tests/shared/trial_length.hpp"
 #include "tests/stability/bracket_trial.hpp"
 #include "tests/stability/hardships.hpp"
-#include "tests/stability/proxy_trail.hpp"
+#include "tests/stability/pop_through_trial.hpp"
 #include "tests/stability/random_motion.hpp"
 #include "tests/stability/trial_terms.hpp"
 

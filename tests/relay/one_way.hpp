@@ -3,17 +3,94 @@
 #pragma once
 
 #include "platform/machine/time.hpp"
-#include "tests/relay/frame_fates.hpp"
-#include "tests/relay/relay_command.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace tactus::relay
 {
+
+/// Content of an Ethernet frame by its headers.
+struct FrameContent
+{
+    bool is_arp{false};
+    /// Datagrams: 1 for a whole one and for the first fragment of one.
+    std::uint32_t udp_datagrams{0};
+    std::uint32_t udp_payload_bytes{0}; ///< Bytes without the eight bytes of UDP's header.
+};
+
+/// Reads Ethernet, IPv4 and UDP headers. A datagram in IP fragments is counted once, with its first
+/// one, and its payload in each. Truncated or contradictory headers count as no UDP.
+[[nodiscard]] FrameContent content_of(std::span<const std::byte> frame);
+
+inline constexpr double kDelayMax_ms = 10'000.0;
+
+struct LinkCondition
+{
+    double delay_ms{0.0}; ///< Delay of every frame, one way, 0 .. kDelayMax_ms.
+    /// Additional delay, uniform from 0 to this; frames overtake each other.
+    double jitter_ms{0.0};
+    double loss{0.0};       ///< Share of the frames that are lost, 0 .. 1.
+    double duplicates{0.0}; ///< Share of the arriving frames that are duplicated, 0 .. 1.
+};
+
+/// Cut of one or both directions.
+struct Cut
+{
+    bool to_controller{true};
+    bool to_server{true};
+};
+struct Restore
+{
+};
+struct Count
+{
+};
+/// Change of one figure of the condition.
+struct Set
+{
+    double LinkCondition::*figure;
+    double value;
+};
+
+/// Command to a running relay.
+using Command = std::variant<Cut, Restore, Count, Set>;
+
+/// Parses a line: "cut", "cut to-controller", "cut to-server", "restore", "count", or "set" with
+/// "delay-ms", "jitter-ms", "loss" or "duplicates" and a number in its range. Empty for any other.
+[[nodiscard]] std::optional<Command> parse_command(std::string_view line);
+
+/// Allowed forms, for the refusal of other commands.
+[[nodiscard]] std::string command_forms();
+
+struct FrameFate
+{
+    std::size_t copies{0}; ///< Copies that arrive: 0 if it is lost, 2 if it is duplicated.
+    std::array<Duration, 2> delays{};
+};
+
+/// Fates of the frames of one direction. That of frame n is a function of seed, n and condition
+/// alone, independent of other frames and their times. A run with the same frames thus repeats, and
+/// one with a larger loss also loses the frames of the smaller one.
+class FrameFates
+{
+public:
+    explicit FrameFates(std::uint64_t seed) : seed_(seed) {}
+
+    /// Fate of the next frame. One that must arrive is neither lost nor duplicated, but delayed.
+    [[nodiscard]] FrameFate next(const LinkCondition& condition, bool must_arrive);
+
+private:
+    std::uint64_t seed_;
+    std::uint64_t frame_{0};
+};
 
 /// Counts since the start: frames + duplicated = delivered + lost + cut + dropped_full + frames in
 /// transit.

@@ -1,18 +1,138 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
 #include "tests/shared/certificate_refinement.hpp"
 
-#include "tests/shared/closed_cut.hpp"
 #include "tests/shared/closest_point.hpp"
+#include "tests/shared/face_tree.hpp"
+#include "tests/shared/surface_points.hpp"
+#include "tests/shared/test_model.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <queue>
+#include <stdexcept>
 
 namespace tactus::test
 {
+namespace
+{
+
+constexpr double kFlat_quanta = 0.25;
+
+/// Fineness, 4 to 16, of a raster with about `points` points.
+std::uint32_t fineness_for(std::size_t faces, std::size_t points)
+{
+    std::uint32_t fineness = 16;
+    while (fineness > 4 && faces * (fineness + 1) * (fineness + 2) / 2 > points)
+    {
+        --fineness;
+    }
+    return fineness;
+}
+
+/// Greatest distance of the source points nearest to each face; negative without such a point.
+std::vector<double> true_errors(const std::vector<Face>& source, const std::vector<Face>& cut,
+                                std::size_t points)
+{
+    const FaceTree tree(cut);
+    std::vector<double> errors_m(cut.size(), -1.0);
+    visit_raster(source, fineness_for(source.size(), points),
+                 [&](const Vec3& point_m)
+                 {
+                     const FaceTree::Nearest nearest = tree.nearest(point_m);
+                     errors_m[nearest.face] = std::max(errors_m[nearest.face], nearest.distance_m);
+                 });
+    return errors_m;
+}
+
+double area_of(const Face& face)
+{
+    const Vec3 a = to_vec3(face[0]);
+    return 0.5 * (to_vec3(face[1]) - a).cross(to_vec3(face[2]) - a).norm();
+}
+
+} // namespace
+
+CertificateFigures measure_certificate(const PreparedMesh& prepared,
+                                       const Simplification& simplification, std::size_t faces,
+                                       std::size_t points)
+{
+    const CertifiedCut cut = cut_on_the_way(prepared, simplification, faces);
+    const std::vector<double> true_m = true_errors(faces_on_grid(prepared), cut.faces, points);
+    CertificateFigures figures;
+    figures.flat_m = kFlat_quanta * prepared.quantum_m;
+    figures.faces = cut.faces.size();
+    double area_sum = 0.0;
+    for (std::size_t i = 0; i < cut.faces.size(); ++i)
+    {
+        figures.bound_max_m = std::max(figures.bound_max_m, cut.bounds_m[i]);
+        figures.true_max_m = std::max(figures.true_max_m, true_m[i]);
+        if (true_m[i] >= 0.0)
+        {
+            const double area = area_of(cut.faces[i]);
+            area_sum += area;
+            figures.bound_mean_m += area * cut.bounds_m[i];
+            figures.true_mean_m += area * true_m[i];
+            figures.face_ratio_mean += area * figures.ratio(cut.bounds_m[i], true_m[i]);
+        }
+    }
+    figures.bound_mean_m /= area_sum;
+    figures.true_mean_m /= area_sum;
+    figures.face_ratio_mean /= area_sum;
+    return figures;
+}
+
+ClosedCut::ClosedCut(const DecodedModel& model)
+    : model_(model), replay_(model), is_split_(model.header().counts().records)
+{
+}
+
+std::span<const RecordId> ClosedCut::split_with_closure(RecordId target)
+{
+    taken_.clear();
+    open_.push_back(target);
+    while (!open_.empty())
+    {
+        const RecordId record = open_.back();
+        if (const RecordId missing = missing_dependency(record); !missing.is_none())
+        {
+            open_.push_back(missing);
+            continue;
+        }
+        open_.pop_back();
+        if (is_split(record))
+        {
+            continue;
+        }
+        if (const auto fault = replay_.split(record))
+        {
+            throw std::logic_error(*fault);
+        }
+        is_split_[record.value] = true;
+        ++split_count_;
+        taken_.push_back(record);
+    }
+    return taken_;
+}
+
+RecordId ClosedCut::missing_dependency(RecordId record) const
+{
+    const VsplitRecord& fields = model_.record(record);
+    for (std::uint32_t i = 0; i < fields.fan_size; ++i)
+    {
+        const FaceState before = fields.before[i];
+        if (!before.is_base() && !is_split(before.record()))
+        {
+            return before.record();
+        }
+    }
+    return {};
+}
 
 /// State of one question: the cut so far, and its faces by their lower bounds.
 class CertificateRefinement::Run

@@ -9,7 +9,6 @@
 #include "tests/shared/random.hpp"
 #include "tests/shared/worst_shapes.hpp"
 #include "tests/stability/pop_through_trial.hpp"
-#include "tests/stability/proxy_trail.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/bench/peers/bullet_query.hpp"
+#include "tests/bench/peers/all_peers.hpp"
 
 #include <btBulletCollisionCommon.h>
 #include <limits>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/bench/peers/cgal_simplifiers.hpp"
-
 #include "tests/bench/measuring.hpp"
+#include "tests/bench/peers/all_peers.hpp"
 
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>

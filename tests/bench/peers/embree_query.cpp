@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/bench/peers/embree_query.hpp"
-
+#include "tests/bench/peers/all_peers.hpp"
 #include "tests/shared/closest_point.hpp"
 
 #include <atomic>

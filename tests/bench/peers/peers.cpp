@@ -1,28 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/bench/peers/mesh_simplifier.hpp"
-#include "tests/bench/peers/pair_query.hpp"
-#include "tests/bench/peers/point_query.hpp"
-
-#ifdef TACTUS_BENCH_BULLET
-#include "tests/bench/peers/bullet_query.hpp"
-#endif
-#ifdef TACTUS_BENCH_CGAL
-#include "tests/bench/peers/cgal_query.hpp"
-#include "tests/bench/peers/cgal_simplifiers.hpp"
-#endif
-#ifdef TACTUS_BENCH_EMBREE
-#include "tests/bench/peers/embree_query.hpp"
-#endif
-#ifdef TACTUS_BENCH_FCL
-#include "tests/bench/peers/fcl_query.hpp"
-#endif
-#ifdef TACTUS_BENCH_MESHOPTIMIZER
-#include "tests/bench/peers/meshopt_simplifier.hpp"
-#endif
-#ifdef TACTUS_BENCH_OPENMESH
-#include "tests/bench/peers/openmesh_simplifier.hpp"
-#endif
+#include "tests/bench/peers/all_peers.hpp"
 
 namespace tactus::bench
 {

@@ -42,6 +42,20 @@ model() {
     fi
 }
 
+# scene FILE "NAME MODEL X [Y]"...: writes a scene of objects that show MODEL.spm.
+scene() {
+    local file=$1 nodes='' list='' i=0 name model x y
+    shift
+    while read -r name model x y; do
+        list+="${list:+, }$i"
+        nodes+="${nodes:+, }{\"name\": \"$name\", \"translation\": [$x, ${y:-0}, 0],"
+        nodes+=" \"extras\": {\"tactus\": {\"model\": \"$model.spm\"}}}"
+        i=$((i + 1))
+    done < <(printf '%s\n' "$@")
+    printf '{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [%s]}], "nodes": [%s]}' \
+        "$list" "$nodes" >"$file"
+}
+
 failures=0
 fault() {
     printf 'FAULT: %s\n' "$*"
@@ -142,6 +156,10 @@ sleeps_of() {
     awk '$1 == "voluntary_ctxt_switches:" && $2 > most { most = $2 } END { print most + 0 }' \
         "/proc/$1/task/"*/status 2>/dev/null
 }
+# resident_kib ID, memory_kib ID: print the process's resident memory, now and at most so far.
+resident_kib() { awk '$1 == "VmRSS:" { print $2 }' "/proc/$1/status"; }
+memory_kib() { awk '$1 == "VmHWM:" { print $2 }' "/proc/$1/status"; }
+
 # wait_for_more ID [SLEEPS]: lets that process continue for this time, an hrtc for a second.
 wait_for_more() { wait_for_sleeps $(($(sleeps_of "$1") + ${2:-3000})) "$1"; }
 
@@ -240,7 +258,7 @@ check_contact() {
     check "$1" "$2" '>' "$share"
 }
 
-# check FILE [LEFT OP RIGHT]...: see check_report.cpp.
+# check FILE [LEFT OP RIGHT]...: see check_report.py.
 check() {
     "$check_report" "$@" || fault "$1, see above"
 }

@@ -7,19 +7,14 @@ model bumpy-sphere-5000 ball.spm
 model torus-10000 ring.spm
 
 # Ten by twenty objects, 0.3 m apart.
-nodes=
-list=
+objects=()
 for ((i = 0; i < 200; ++i)); do
     file=ball
     ((i % 2 == 0)) || file=ring
     row=$((i / 10))
-    nodes+=",{\"name\": \"object-$i\","
-    nodes+=" \"translation\": [$((i % 10 * 3))e-1, $((row * 3))e-1, 0],"
-    nodes+=" \"extras\": {\"tactus\": {\"model\": \"$file.spm\"}}}"
-    list+=",$i"
+    objects+=("object-$i $file $((i % 10 * 3))e-1 $((row * 3))e-1")
 done
-printf '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[%s]}],"nodes":[%s]}' \
-    "${list#,}" "${nodes#,}" >scene.gltf
+scene scene.gltf "${objects[@]}"
 
 deadline_test --scene scene.gltf --tools 4 --duration 2 --load none
 check run.json frames == 2000 scene.objects == 200 scene.objects_max == 200 \

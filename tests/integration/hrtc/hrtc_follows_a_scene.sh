@@ -7,19 +7,6 @@ source "$(dirname "$0")/common.sh"
 model bumpy-sphere-5000 ball.spm
 model torus-10000 ring.spm
 
-# scene FILE "NAME MODEL X"...
-scene() {
-    local file=$1 nodes='' list='' i=0 name model x
-    shift
-    while read -r name model x; do
-        list+="${list:+, }$i"
-        nodes+="${nodes:+, }{\"name\": \"$name\", \"translation\": [$x, 0, 0],"
-        nodes+=" \"extras\": {\"tactus\": {\"model\": \"$model.spm\"}}}"
-        i=$((i + 1))
-    done < <(printf '%s\n' "$@")
-    printf '{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [%s]}], "nodes": [%s]}' \
-        "$list" "$nodes" >"$file"
-}
 scene bench.gltf 'ball ball 0' 'ring-1 ring 0.5' 'ring-2 ring 1'
 scene other.gltf 'ball ball 0' 'ring-1 ring 0.6' 'late ball 2' 'later ball 3'
 cat >poses.txt <<'POSES'

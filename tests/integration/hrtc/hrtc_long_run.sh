@@ -5,7 +5,6 @@
 source "$(dirname "$0")/common.sh"
 readonly rate=$4 seconds=$5
 
-resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
 
 model bumpy-sphere-200000 bumpy.spm
 start_publisher bumpy.spm --watch

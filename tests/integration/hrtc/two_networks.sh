@@ -96,7 +96,6 @@ check_wire_run() {
     check_clean "$1"
 }
 
-resident_kib() { awk '/^VmRSS/ { print $2 }' "/proc/$1/status"; }
 
 # sent_pieces: prints the pieces that the server sent in the last subscription, after all have
 # ended.

@@ -3,7 +3,6 @@
 
 /// Splits and bytes on 1.1 M faces.
 
-#include "tests/bench/exact_splits.hpp"
 #include "tests/bench/first_contact.hpp"
 #include "tests/unit/bench/opened_model.hpp"
 

@@ -3,7 +3,7 @@
 #include "tests/unit/host_encode/certified_cuts.hpp"
 
 #include "host_tools/encode/numbering.hpp"
-#include "tests/shared/closed_cut.hpp"
+#include "tests/shared/certificate_refinement.hpp"
 #include "tests/shared/surface_points.hpp"
 #include "tests/shared/test_model.hpp"
 

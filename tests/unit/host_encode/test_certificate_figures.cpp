@@ -4,8 +4,7 @@
 /// Tightness of the certificate, and proof that its figures cannot be falsified.
 
 #include "host_tools/encode/numbering.hpp"
-#include "tests/shared/certificate_figures.hpp"
-#include "tests/shared/closed_cut.hpp"
+#include "tests/shared/certificate_refinement.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 /// Bounds of a file of 1.1 M faces, and of the largest well-known mesh with ten times as many
 /// points as in every run.
 
-#include "tests/shared/certificate_figures.hpp"
+#include "tests/shared/certificate_refinement.hpp"
 #include "tests/unit/host_encode/certified_cuts.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 #include "tests/unit/rt_core/support.hpp"

@@ -3,7 +3,6 @@
 
 /// Basis of the network tests: delay, order, losses and counts are the requested ones.
 
-#include "tests/relay/frame_content.hpp"
 #include "tests/relay/one_way.hpp"
 
 #include <gtest/gtest.h>
