@@ -7,7 +7,6 @@
 #include "tests/unit/geometry/hull_oracle.hpp"
 #include "tests/unit/geometry/hull_scenes.hpp"
 
-#include <array>
 #include <cmath>
 #include <string>
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace tactus::test
 {

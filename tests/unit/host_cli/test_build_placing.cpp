@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
 /// Rotation, size and displacement by spm_build.
 

@@ -8,7 +8,6 @@
 #include "tests/unit/rt_core/support.hpp"
 
 #include <array>
-#include <string>
 #include <vector>
 
 namespace tactus

@@ -11,9 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <fstream>
 #include <set>
 #include <string>
 #include <string_view>

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <random>
 
 /// The oracle is the shoelace formula: triangles with the polygon's orientation whose areas add up

@@ -11,7 +11,6 @@
 #include <cstring>
 #include <initializer_list>
 #include <string>
-#include <vector>
 
 namespace tactus::test
 {

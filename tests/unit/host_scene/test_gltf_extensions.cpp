@@ -8,7 +8,6 @@
 #include <array>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 /// Handling of extensions: the table of the docs, notes, and supported ones.
 

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "tests/unit/host_scene/scene_files.hpp"
 
-#include <algorithm>
 #include <fstream>
 
 /// Useless parts are skipped by name, and the rest of the scene is read.

@@ -5,8 +5,6 @@
 
 #include <Eigen/Geometry>
 
-#include <cmath>
-
 /// Nodes that are objects, with their names and poses.
 
 namespace tactus::test

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -120,15 +119,15 @@ struct LoopRigOptions
 {
     TamperedDevice::Tamper tamper = [](std::uint64_t, DeviceSample&) {};
     /// Called while a frame's device is read.
-    std::function<void(LoopRig& rig, std::uint64_t frame)> meanwhile;
-    std::vector<DeviceFault> faults;
-    std::vector<LateWake> late_wakes;
-    std::optional<Duration> watchdog;
+    std::function<void(LoopRig& rig, std::uint64_t frame)> meanwhile{};
+    std::vector<DeviceFault> faults{};
+    std::vector<LateWake> late_wakes{};
+    std::optional<Duration> watchdog{};
     bool static_model{false};
     bool has_mailbox{false};                ///< True if objects have the poses of mailbox().
     double object_speed_m_per_s{kInfinity}; ///< Object speed limit.
     /// Object speed limit of the last force stage; empty: that of the mailbox.
-    std::optional<double> change_speed_m_per_s;
+    std::optional<double> change_speed_m_per_s{};
     DeviceLimits device{kDeskClass};
     double press_m{kPress_m}; ///< Depth; negative: the hand rests above the surface.
     std::uint64_t frames{2'000};
@@ -138,10 +137,10 @@ struct LoopRigOptions
     double angular_stiffness_nm_per_rad{0.0}; ///< See ToolSpec.
     const Clock* clock{nullptr}; ///< Another clock than the virtual one, with its own timer.
     PeriodicTimer* timer{nullptr};
-    std::optional<std::size_t> front_slots; ///< Slots of the viewer copy.
-    bool is_coarse{false};                  ///< True if only the base mesh is loaded.
+    std::optional<std::size_t> front_slots{}; ///< Slots of the viewer copy.
+    bool is_coarse{false};                    ///< True if only the base mesh is loaded.
     /// Distance of an object of a second model beyond the hand's start.
-    std::optional<double> neighbour_m;
+    std::optional<double> neighbour_m{};
 };
 
 class LoopRig

@@ -40,23 +40,20 @@ using Frames = std::vector<std::uint64_t>;
 
 TEST(FrameRepeater, names_the_suspects_that_are_over_the_limit_again_and_no_other_frame)
 {
-    const auto over = frames_over_again(recorded_run(), Frames{3, 17, kFrames - 1}, nanoseconds(0));
-    ASSERT_TRUE(over);
-    EXPECT_EQ(over.value(), (Frames{3, 17, kFrames - 1}));
-}
-
-TEST(FrameRepeater, clears_those_that_never_are)
-{
-    const auto over = frames_over_again(recorded_run(), Frames{3, 17}, milliseconds(100'000));
-    ASSERT_TRUE(over);
-    EXPECT_TRUE(over.value().empty());
-}
-
-TEST(FrameRepeater, repeats_nothing_for_nobody)
-{
-    const auto over = frames_over_again(recorded_run(), {}, nanoseconds(0));
-    ASSERT_TRUE(over);
-    EXPECT_TRUE(over.value().empty());
+    struct Case
+    {
+        Frames suspects;
+        Duration limit;
+        Frames over;
+    };
+    for (const auto& [suspects, limit, over] :
+         {Case{{3, 17, kFrames - 1}, nanoseconds(0), {3, 17, kFrames - 1}},
+          Case{{3, 17}, milliseconds(100'000), {}}, Case{{}, nanoseconds(0), {}}})
+    {
+        const auto sut = frames_over_again(recorded_run(), suspects, limit);
+        ASSERT_TRUE(sut);
+        EXPECT_EQ(sut.value(), over);
+    }
 }
 
 TEST(FrameRepeater, refuses_a_frame_that_is_not_in_the_recording)

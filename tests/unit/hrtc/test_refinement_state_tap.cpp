@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,14 +33,6 @@ std::vector<std::pair<std::uint32_t, std::uint64_t>> pages_of(Frame& frame)
     return pages;
 }
 
-LoopRigOptions options_of(std::optional<std::size_t> slots, std::uint64_t frames)
-{
-    LoopRigOptions options;
-    options.front_slots = slots;
-    options.frames = frames;
-    return options;
-}
-
 /// The greatest number.
 constexpr std::size_t kSlots = kMaxStatePages;
 /// The last frame is the first of a hundred.
@@ -49,15 +40,16 @@ constexpr std::uint64_t kFrames = 9 * RefinementStateTap::kFrames + 1;
 
 TEST(RefinementStateTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
 {
-    LoopRigOptions options = options_of(kSlots, kFrames);
-    options.meanwhile = [](LoopRig& running, std::uint64_t frame)
-    {
-        if (frame == kFrames - 2)
-        {
-            running.front().give_back(); // State of the first frame; the last one makes the next.
-        }
-    };
-    LoopRig rig(options);
+    LoopRig rig({.meanwhile =
+                     [](LoopRig& running, std::uint64_t frame)
+                 {
+                     if (frame == kFrames - 2)
+                     {
+                         running.front().give_back(); // State of the first frame; the last one
+                     }                                // makes the next.
+                 },
+                 .frames = kFrames,
+                 .front_slots = kSlots});
     EXPECT_EQ(rig.front().take(), nullptr);
     rig.run();
     const RefinementStateCopy* copy = rig.front().take();
@@ -84,15 +76,16 @@ TEST(RefinementStateTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is
 TEST(RefinementStateTap, leaves_a_copy_alone_until_it_is_given_back)
 {
     std::vector<ShownPage> first;
-    LoopRigOptions options = options_of(kSlots, kFrames);
-    options.meanwhile = [&first](LoopRig& running, std::uint64_t frame)
-    {
-        if (frame == 1)
-        {
-            first = running.front().take()->slots;
-        }
-    };
-    LoopRig rig(options);
+    LoopRig rig({.meanwhile =
+                     [&first](LoopRig& running, std::uint64_t frame)
+                 {
+                     if (frame == 1)
+                     {
+                         first = running.front().take()->slots;
+                     }
+                 },
+                 .frames = kFrames,
+                 .front_slots = kSlots});
     RefinementStateTap& sut = rig.front();
     rig.run();
     ASSERT_NE(sut.take(), nullptr);
@@ -106,7 +99,7 @@ TEST(RefinementStateTap, leaves_a_copy_alone_until_it_is_given_back)
 
 TEST(RefinementStateTap, starts_from_what_is_there_when_it_is_made)
 {
-    LoopRig rig(options_of(std::nullopt, kFrames));
+    LoopRig rig({.frames = kFrames});
     rig.loop().run();
     PagePool& pages = rig.frame().pools().cache.pages;
     std::vector<ShownPage> there(pages.metas.begin(), pages.metas.end());
@@ -118,7 +111,7 @@ TEST(RefinementStateTap, starts_from_what_is_there_when_it_is_made)
 
 TEST(RefinementStateTap, counts_slots_for_which_it_has_no_room)
 {
-    LoopRig rig(options_of(2, 1));
+    LoopRig rig({.frames = 1, .front_slots = 2});
     const RefinementStateTap& sut = rig.front();
     rig.loop().run();
     ASSERT_NE(sut.take(), nullptr);
@@ -128,9 +121,8 @@ TEST(RefinementStateTap, counts_slots_for_which_it_has_no_room)
 
 TEST(RefinementStateTap, copies_where_chunks_are_looked_for)
 {
-    LoopRigOptions options = options_of(kSlots, 1);
-    options.is_coarse = true; // No pages of a fully resident model are searched.
-    LoopRig rig(options);
+    // No pages of a fully resident model are searched.
+    LoopRig rig({.frames = 1, .front_slots = kSlots, .is_coarse = true});
     const RefinementStateTap& sut = rig.front();
     rig.loop().run();
     ASSERT_NE(sut.take(), nullptr);
@@ -153,8 +145,8 @@ TEST(RefinementStateTap, copies_where_chunks_are_looked_for)
 
 TEST(RefinementStateTap, changes_nothing_that_the_loop_does)
 {
-    LoopRig with(options_of(kSlots, 500));
-    LoopRig without(options_of(std::nullopt, 500));
+    LoopRig with({.frames = 500, .front_slots = kSlots});
+    LoopRig without({.frames = 500});
     const auto run = [](LoopRig& rig)
     {
         rig.loop().run();

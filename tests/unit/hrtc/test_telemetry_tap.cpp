@@ -29,9 +29,7 @@ TEST(TelemetryTap, has_nothing_before_the_first_frame)
 
 TEST(TelemetryTap, shows_the_newest_frame_as_the_loop_had_it)
 {
-    LoopRigOptions options;
-    options.frames = kSettled;
-    LoopRig rig(options);
+    LoopRig rig({.frames = kSettled});
     rig.loop().run();
     Telemetry telemetry;
     ASSERT_TRUE(rig.telemetry.try_read(telemetry));
@@ -64,9 +62,7 @@ TEST(TelemetryTap, shows_the_newest_frame_as_the_loop_had_it)
 
 TEST(ObjectTap, leaves_a_copy_alone_until_it_is_given_back)
 {
-    LoopRigOptions options;
-    options.frames = 10;
-    LoopRig rig(options);
+    LoopRig rig({.frames = 10});
     ObjectTap& sut = rig.telemetry.objects();
     EXPECT_EQ(sut.take(), nullptr);
     rig.loop().run();
@@ -86,9 +82,7 @@ TEST(ObjectTap, leaves_a_copy_alone_until_it_is_given_back)
 
 TEST(ObjectTap, lists_objects_of_pairs_once_and_in_turn_all_others)
 {
-    LoopRigOptions options;
-    options.frames = 1;
-    LoopRig rig(options);
+    LoopRig rig({.frames = 1});
     rig.loop().run();
     const ObjectTable& objects = rig.frame().objects();
     std::array<PairOutput, 2> pairs{}; // Two tools near object 0.
@@ -108,14 +102,13 @@ TEST(TelemetryTap, sends_no_gripper_that_is_no_number)
     for (const double gripper_m :
          {0.03, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     {
-        LoopRigOptions options;
-        options.frames = 10;
-        options.tamper = [gripper_m](std::uint64_t, DeviceSample& sample)
-        {
-            sample.buttons = 5;
-            sample.gripper_m = gripper_m;
-        };
-        LoopRig rig(options);
+        LoopRig rig({.tamper =
+                         [gripper_m](std::uint64_t, DeviceSample& sample)
+                     {
+                         sample.buttons = 5;
+                         sample.gripper_m = gripper_m;
+                     },
+                     .frames = 10});
         rig.loop().run();
         Telemetry telemetry;
         ASSERT_TRUE(rig.telemetry.try_read(telemetry));
@@ -171,10 +164,8 @@ TEST(SharePush, leaves_a_push_that_no_normal_explains_to_the_nearest)
 
 TEST(TelemetryTap, keeps_the_faults_of_frames_that_nobody_looked_at)
 {
-    LoopRigOptions options;
-    options.tamper = [](std::uint64_t frame, DeviceSample& sample)
-    { sample.valid = frame != kSettled; };
-    LoopRig rig(options);
+    LoopRig rig({.tamper = [](std::uint64_t frame, DeviceSample& sample)
+                 { sample.valid = frame != kSettled; }});
     rig.loop().run();
     Telemetry telemetry;
     ASSERT_TRUE(rig.telemetry.try_read(telemetry));

@@ -5,9 +5,7 @@
 #include "rt_core/math/vec3.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <vector>
 
 /// Stand-in for the controller's force: analytic shapes and a god-object, to test device and hand
 /// before and apart from all code for meshes.

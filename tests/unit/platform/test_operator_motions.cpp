@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <numbers>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>

@@ -12,11 +12,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
-#include <vector>
 
 namespace tactus::plot::test
 {

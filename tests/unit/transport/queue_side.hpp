@@ -11,13 +11,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <map>
 #include <memory>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace tactus::test
 {

@@ -11,14 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <numeric>
 #include <random>
-#include <stdexcept>
-#include <string>
 
 namespace tactus::test
 {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <string>
 
 /// A World with a cube of 100 mm round the origin, as a mesh in memory.
