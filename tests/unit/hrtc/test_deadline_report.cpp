@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/diagnose/deadline_report.hpp"
+#include "platform/diagnose/frame_repeater.hpp"
+#include "tests/shared/altered_recording.hpp"
+#include "tests/shared/frame_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +12,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -102,6 +104,65 @@ TEST(DeadlineReport, tells_of_the_wake_as_cyclictest_does)
     EXPECT_NE(text.find("of the period: 3.0 % alone"), std::string::npos) << text;
 }
 
-} // namespace
+constexpr std::uint64_t kFrames = 30;
 
+/// Recording of a tool that descends on a small model.
+const Recording& recorded_run()
+{
+    static const Recording kRecording = []
+    {
+        const tactus::test::TestModel& model = tactus::test::small_model(0);
+        tactus::test::RigOptions options = tactus::test::with_room_for_all();
+        options.record = true;
+        options.tools = {{0.01 * model.diagonal_m, 500.0, 8.0, 1.0}};
+        tactus::test::FrameRig rig(model, options);
+        const Vec3 place = to_vec3(model.faces.front()[0]);
+        for (std::uint64_t frame = 0; frame < kFrames; ++frame)
+        {
+            rig.step(place * (1.2 - 0.01 * static_cast<double>(frame)));
+        }
+        return std::move(Recording::parse(rig.finish_recording(), "run.rec")).value();
+    }();
+    return kRecording;
+}
+
+using Frames = std::vector<std::uint64_t>;
+
+TEST(FrameRepeater, names_the_suspects_that_are_over_the_limit_again_and_no_other_frame)
+{
+    struct Case
+    {
+        Frames suspects;
+        Duration limit;
+        Frames over;
+    };
+    for (const auto& [suspects, limit, over] :
+         {Case{{3, 17, kFrames - 1}, nanoseconds(0), {3, 17, kFrames - 1}},
+          Case{{3, 17}, milliseconds(100'000), {}}, Case{{}, nanoseconds(0), {}}})
+    {
+        const auto sut = frames_over_again(recorded_run(), suspects, limit);
+        ASSERT_TRUE(sut);
+        EXPECT_EQ(sut.value(), over);
+    }
+}
+
+TEST(FrameRepeater, refuses_a_frame_that_is_not_in_the_recording)
+{
+    const auto over = frames_over_again(recorded_run(), Frames{3, kFrames}, milliseconds(100'000));
+    ASSERT_FALSE(over);
+    EXPECT_EQ(over.error(), "frame 30 is not in the recording of 30 frames");
+}
+
+/// A replay that differs from the run proves nothing about it.
+TEST(FrameRepeater, refuses_a_recording_that_comes_out_otherwise)
+{
+    const std::vector<std::byte> bytes =
+        tactus::test::alter_frame(recorded_run(), 12, tactus::test::change_goal);
+    const Recording altered = std::move(Recording::parse(bytes, "altered.rec")).value();
+    const auto over = frames_over_again(altered, Frames{3}, milliseconds(100'000));
+    ASSERT_FALSE(over);
+    EXPECT_NE(over.error().find("frame 12"), std::string::npos) << over.error();
+}
+
+} // namespace
 } // namespace tactus::hrtc::test
