@@ -8,7 +8,6 @@
 #include "tests/shared/shape_scenes.hpp"
 #include "tests/unit/geometry/grid.hpp"
 #include "tests/unit/geometry/integer_oracle.hpp"
-#include "tests/unit/geometry/same_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,6 +22,19 @@ namespace tactus::test
 {
 namespace
 {
+
+/// Compares to the bit. Any thread.
+void expect_same(const ClosestPoints& sut, const ClosestPoints& own)
+{
+    ASSERT_EQ(sut.on_shape, own.on_shape);
+    ASSERT_EQ(sut.on_triangle, own.on_triangle);
+    ASSERT_EQ(sut.gap, own.gap);
+    ASSERT_EQ(sut.distance, own.distance);
+    ASSERT_EQ(sut.distance_error, own.distance_error);
+    ASSERT_EQ(sut.meet, own.meet);
+    ASSERT_EQ(sut.feature, own.feature);
+    ASSERT_EQ(sut.shape_feature, own.shape_feature);
+}
 
 /// First piercing by find_piercing() of one edge after the other.
 std::optional<EdgePiercing> first_piercing(const Triangle& first, const Triangle& second)
