@@ -20,7 +20,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -285,12 +284,10 @@ TEST(AtomicFile, leaves_an_ignored_signal_ignored)
 }
 
 } // namespace
-
 } // namespace tactus::test
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -323,5 +320,4 @@ TEST(FilesNear, lists_what_else_the_folder_has)
 }
 
 } // namespace
-
 } // namespace tactus

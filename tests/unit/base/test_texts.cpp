@@ -83,11 +83,6 @@ TEST(NumberForm, means_nothing_that_it_would_refuse)
     }
 }
 
-} // namespace
-
-namespace
-{
-
 TEST(NearestWord, is_the_one_with_the_fewest_other_letters)
 {
     constexpr std::array<std::string_view, 4> kWords{"point", "sphere", "sphinx", "box"};
@@ -158,11 +153,6 @@ TEST(Printable, keeps_the_utf_8_of_a_line_and_shows_what_steers_a_terminal_as_qu
     }
     EXPECT_EQ(printable_line(long_line + "\n\xc3\xbc.stl"), long_line + "?\xc3\xbc.stl");
 }
-
-} // namespace
-
-namespace
-{
 
 TEST(Utf8, characters_have_their_bytes_and_what_is_none_has_0)
 {

@@ -52,9 +52,8 @@ TEST(ExactSplits, of_a_sphere_leave_no_coarse_face_in_it_and_are_all_asked_for)
     }
 }
 
-class FirstContact : public testing::Test
+struct FirstContact : testing::Test
 {
-protected:
     [[nodiscard]] FirstContactFigures measured(double radius_diag, std::uint32_t contacts)
     {
         return measure_first_contact(model_.store, model_.decoded, model_.model.faces,

@@ -13,7 +13,6 @@
 
 namespace tactus::bench
 {
-
 namespace
 {
 
@@ -45,5 +44,4 @@ TEST(LargeModel, takes_few_splits_and_bytes_until_an_answer_is_exact)
 }
 
 } // namespace
-
 } // namespace tactus::bench

@@ -15,9 +15,8 @@ namespace tactus::test
 /// grid from a triangle, by all possible normals. It tries every plane through three corners of the
 /// hull, every product of two edges and the triangle's own plane; most of them belong to no side,
 /// which is harmless. For coordinates up to 1,000.
-class IntegerAxes
+struct IntegerAxes
 {
-public:
     IntegerAxes(std::span<const GridPoint> hull, const GridTriangle& triangle)
         : hull_(hull), triangle_(triangle)
     {

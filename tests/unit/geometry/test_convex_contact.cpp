@@ -14,7 +14,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

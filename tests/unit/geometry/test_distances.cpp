@@ -20,9 +20,8 @@ namespace
 
 using Case = std::tuple<std::size_t, std::size_t>;
 
-class ClosestPointsTest : public ::testing::TestWithParam<Case>
+struct ClosestPointsTest : ::testing::TestWithParam<Case>
 {
-protected:
     [[nodiscard]] static const KernelTrial& kernel()
     {
         return kernel_trials()[std::get<0>(GetParam())];
@@ -67,9 +66,8 @@ void expect_finite(const char* shape, const ClosestPoints& answer)
 }
 
 /// Random numbers: zeros, any size up to `most`, and multiples of earlier ones.
-class AnyNumbers
+struct AnyNumbers
 {
-public:
     AnyNumbers(Random& random, double most) : random_(random), most_(most) {}
 
     [[nodiscard]] double number()

@@ -13,7 +13,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

@@ -9,7 +9,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -49,9 +48,8 @@ struct CornerBlock
 };
 
 /// Rotated hull near a block of corners.
-class SeparationsTest : public ::testing::Test
+struct SeparationsTest : ::testing::Test
 {
-protected:
     void make(Random& random, double away)
     {
         vertices_.clear();
@@ -191,5 +189,4 @@ TEST_F(SeparationsTest, the_direction_that_was_added_first_makes_room)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -10,7 +10,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

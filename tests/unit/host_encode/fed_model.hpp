@@ -14,9 +14,8 @@ namespace tactus::test
 {
 
 /// Model with base mesh and selected chunks only, loaded directly.
-class FedModel
+struct FedModel
 {
-public:
     /// Parses and links the chunks. The store must outlive it.
     FedModel(const ModelStore& store, std::span<const ChunkId> chunks);
 

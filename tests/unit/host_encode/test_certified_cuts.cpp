@@ -26,9 +26,7 @@ namespace
 constexpr std::uint32_t kCuts = 8; ///< Cuts of each kind.
 constexpr std::size_t kCutPoints = 11'000;
 
-class CertifiedCuts : public testing::TestWithParam<SampleMesh>
-{
-};
+using CertifiedCuts = testing::TestWithParam<SampleMesh>;
 
 TEST_P(CertifiedCuts, cover_the_source_and_would_not_with_a_fifth_less)
 {
@@ -49,9 +47,7 @@ constexpr double kSixthRatio = 1.5;
 constexpr double kTwoThirdsRatio = 3.5;
 constexpr std::size_t kPoints = 200'000;
 
-class CertificateFiguresOfMesh : public testing::TestWithParam<SampleMesh>
-{
-};
+using CertificateFiguresOfMesh = testing::TestWithParam<SampleMesh>;
 
 TEST_P(CertificateFiguresOfMesh, are_sound_and_tight)
 {

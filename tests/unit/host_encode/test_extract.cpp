@@ -19,7 +19,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -325,5 +324,4 @@ TEST(Extract, a_zone_beside_the_model_leaves_the_base_mesh)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -16,7 +16,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -255,5 +254,4 @@ TEST(Influence, relative_boxes_are_rounded_outward_and_stay_in_16_bits)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -24,7 +24,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -192,9 +191,8 @@ struct Subject
     std::vector<SourceFace> faces;
 };
 
-class Regions : public testing::TestWithParam<SampleMesh>
+struct Regions : testing::TestWithParam<SampleMesh>
 {
-protected:
     void SetUp() override
     {
         auto model = GetParam().encode();
@@ -280,5 +278,4 @@ INSTANTIATE_TEST_SUITE_P(Generated, Regions, testing::ValuesIn(generated_meshes(
 INSTANTIATE_TEST_SUITE_P(WellKnown, Regions, testing::ValuesIn(smaller_known_meshes()), mesh_name);
 
 } // namespace
-
 } // namespace tactus::test

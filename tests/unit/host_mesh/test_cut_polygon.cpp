@@ -15,7 +15,6 @@
 /// to the polygon's cover it once.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -401,5 +400,4 @@ TEST(PolygonSink, notes_only_what_is_wrong)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -10,7 +10,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -282,5 +281,4 @@ RC_GTEST_PROP(Manifold, does_not_touch_manifold_meshes, ())
 }
 
 } // namespace
-
 } // namespace tactus::test

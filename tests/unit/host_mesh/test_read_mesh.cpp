@@ -12,7 +12,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -223,5 +222,4 @@ TEST(ReadMesh, shows_no_byte_of_the_file_that_a_terminal_would_obey)
 }
 
 } // namespace
-
 } // namespace tactus::test

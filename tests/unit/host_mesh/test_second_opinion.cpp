@@ -17,7 +17,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -96,9 +95,7 @@ struct KnownMesh
     }
 };
 
-class KnownMeshes : public testing::TestWithParam<KnownMesh>
-{
-};
+using KnownMeshes = testing::TestWithParam<KnownMesh>;
 
 TEST_P(KnownMeshes, are_read_whole_and_become_manifold)
 {
@@ -155,5 +152,4 @@ TEST(SecondOpinion, igea_is_closed_manifold_and_turned_outward)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -12,7 +12,6 @@
 /// every surface, by solid angles.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -322,5 +321,4 @@ TEST(TurnClosedPieces, sorts_out_bubbles_in_bubbles)
 }
 
 } // namespace
-
 } // namespace tactus::test

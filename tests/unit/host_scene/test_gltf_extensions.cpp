@@ -13,7 +13,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -206,5 +205,4 @@ TEST(GltfExtensions, positions_of_double_precision_keep_it)
 }
 
 } // namespace
-
 } // namespace tactus::test

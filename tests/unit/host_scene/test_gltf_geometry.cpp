@@ -6,7 +6,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -156,5 +155,4 @@ TEST(GltfGeometry, takes_what_may_be_compressed_but_is_here_uncompressed_too)
 }
 
 } // namespace
-
 } // namespace tactus::test

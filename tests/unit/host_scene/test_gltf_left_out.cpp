@@ -8,7 +8,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -244,5 +243,4 @@ TEST(GltfLeftOut, are_no_files_whose_names_a_program_wrote_as_they_are)
 }
 
 } // namespace
-
 } // namespace tactus::test

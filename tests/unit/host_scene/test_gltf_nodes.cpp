@@ -9,7 +9,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -261,5 +260,4 @@ TEST(GltfNodes, in_a_chain_as_long_as_the_bound_are_no_matter)
 }
 
 } // namespace
-
 } // namespace tactus::test

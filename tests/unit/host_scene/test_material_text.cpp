@@ -9,7 +9,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -67,5 +66,4 @@ TEST(MaterialText, refuses_other_keys_values_and_ranges)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -12,7 +12,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

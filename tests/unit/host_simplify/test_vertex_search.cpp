@@ -12,7 +12,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -79,5 +78,4 @@ TEST(VertexSearch, finds_fewer_where_there_are_fewer)
 }
 
 } // namespace
-
 } // namespace tactus

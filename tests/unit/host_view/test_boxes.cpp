@@ -51,9 +51,8 @@ void collect(const AbTree& tree, TreeRef ref, const Aabb& box, std::uint32_t lev
     }
 }
 
-class Boxes : public ::testing::Test
+struct Boxes : ::testing::Test
 {
-protected:
     const std::unique_ptr<tactus::test::FrameRig> rig_ = test::settled_rig();
     const std::vector<RefinementStatePage> pages_ = test::pages_of(rig_->model());
     const test::Shelved shelved_;

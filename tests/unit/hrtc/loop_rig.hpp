@@ -41,9 +41,8 @@ inline constexpr double kRounding_n = 1e-9;
 inline constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 /// Hand that descends on a place of the surface along its normal, presses and stays.
-class PressingOperator final : public OperatorMotion
+struct PressingOperator final : OperatorMotion
 {
-public:
     PressingOperator(const Vec3& place_m, const Vec3& outward, double height_m, double press_m)
         : place_m_(place_m), outward_(outward), height_m_(height_m), press_m_(press_m)
     {
@@ -66,9 +65,8 @@ private:
 };
 
 /// Device whose readings a test can change; keeps the written forces.
-class TamperedDevice final : public HapticDevice
+struct TamperedDevice final : HapticDevice
 {
-public:
     using Tamper = std::function<void(std::uint64_t frame, DeviceSample& sample)>;
 
     TamperedDevice(std::unique_ptr<SimulatedDevice> device, std::vector<DeviceFault> faults,
@@ -113,7 +111,7 @@ private:
     std::uint64_t reads_{0};
 };
 
-class LoopRig;
+struct LoopRig;
 
 struct LoopRigOptions
 {
@@ -143,9 +141,8 @@ struct LoopRigOptions
     std::optional<double> neighbour_m{};
 };
 
-class LoopRig
+struct LoopRig
 {
-public:
     explicit LoopRig(LoopRigOptions options)
         : options_(std::move(options))
         , model_(tactus::test::small_model(0))

@@ -19,7 +19,6 @@
 
 namespace tactus::hrtc
 {
-
 namespace
 {
 
@@ -116,11 +115,6 @@ TEST(FileChoice, says_what_to_do_with_a_mesh_and_with_what_is_no_file)
               "'b.glb' is a second scene; only one scene is possible");
 }
 
-} // namespace
-
-namespace
-{
-
 std::string hex(const udp::Tag& tag)
 {
     std::string text;
@@ -150,5 +144,4 @@ TEST(DeviceKey, makes_keyed_tags_as_others_do)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc

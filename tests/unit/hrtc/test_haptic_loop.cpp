@@ -13,7 +13,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -155,12 +154,8 @@ void expect_to_fade_and_return(const Course& course, std::uint64_t known)
     EXPECT_NEAR(course.written[1'900].norm(), before, course.off * before);
 }
 
-class HapticLoopTrouble : public testing::TestWithParam<Trouble>
-{
-};
-class HapticLoopTorqueTrouble : public HapticLoopTrouble
-{
-};
+using HapticLoopTrouble = testing::TestWithParam<Trouble>;
+using HapticLoopTorqueTrouble = HapticLoopTrouble;
 
 const auto kByName = [](const auto& test) { return std::string(test.param.name); };
 INSTANTIATE_TEST_SUITE_P(Each, HapticLoopTrouble, testing::ValuesIn(kTroubles), kByName);
@@ -425,5 +420,4 @@ TEST(HapticLoop, a_release_that_has_begun_does_not_undo_the_brake_of_a_bug)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

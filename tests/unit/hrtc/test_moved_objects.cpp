@@ -15,7 +15,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -24,9 +23,8 @@ constexpr double kFadeStep_n = 8.0 * kPeriod_s / kFadeTime_s;
 
 /// Object whose pose is sent before each frame in which `shift_m` gives its displacement in x; the
 /// hand descends on it in -x.
-class MovedObject
+struct MovedObject
 {
-public:
     using Shift = std::function<std::optional<double>(std::uint64_t frame)>;
 
     explicit MovedObject(Shift shift, double speed_m_per_s = kInfinity)
@@ -327,5 +325,4 @@ TEST(MovedObject, of_an_honest_server_is_felt_as_if_all_were_believed)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -31,9 +31,8 @@ constexpr std::uint32_t kTools = 1;
 constexpr std::uint32_t kPairs = kTools * kModels;
 
 /// Consecutive frames of two models under one tool.
-class StatisticsRig
+struct StatisticsRig
 {
-public:
     StatisticsRig()
     {
         output_.tools = tools_;

@@ -9,7 +9,6 @@
 
 namespace tactus::hrtc
 {
-
 namespace
 {
 
@@ -82,5 +81,4 @@ TEST(SafetyRecord, puts_events_in_the_order_of_time_and_counts_those_it_does_not
 }
 
 } // namespace
-
 } // namespace tactus::hrtc

@@ -15,7 +15,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -33,9 +32,8 @@ struct Felt
 };
 
 /// The loop hangs for a while; the supervisor, if any, checks on its own schedule.
-class HangingLoop
+struct HangingLoop
 {
-public:
     HangingLoop(std::optional<Duration> own_watchdog, bool is_supervised, Duration hang = kHang)
         : hang_(hang)
         , rig_(options(own_watchdog, is_supervised))
@@ -348,5 +346,4 @@ TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -13,16 +13,14 @@
 
 namespace tactus::hrtc
 {
-
 namespace
 {
 
 using test::kPeriod_s;
 
 /// Still, connected device in use; keeps the last written force.
-class StillDevice final : public HapticDevice
+struct StillDevice final : HapticDevice
 {
-public:
     StillDevice()
     {
         info_.limits.force_max_n = 8.0;
@@ -69,9 +67,8 @@ private:
 };
 
 /// Source of a given external force.
-class SaidForce final : public ExternalForceSource
+struct SaidForce final : ExternalForceSource
 {
-public:
     [[nodiscard]] ExternalForce next(const DeviceSample& /*sample*/, const ToolState& tool,
                                      const ToolOutput& output) noexcept override
     {
@@ -85,9 +82,8 @@ public:
     bool was_in_contact{false};
 };
 
-class ToolPortTest : public testing::Test
+struct ToolPortTest : testing::Test
 {
-protected:
     ToolPortTest()
     {
         setup_.device = std::make_unique<StillDevice>();
@@ -284,5 +280,4 @@ TEST_F(ToolPortTest, a_sample_that_is_not_to_be_trusted_doesnt_move_the_clutch)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc

@@ -45,9 +45,8 @@ std::vector<TraceJson> events_of(const std::filesystem::path& path, TraceJson& f
     return events;
 }
 
-class Traced : public ::testing::Test
+struct Traced : ::testing::Test
 {
-protected:
     [[nodiscard]] AtomicFile file() const { return AtomicFile::create(path_.string()).value(); }
 
     tactus::test::TemporaryFolder folder_{"trace"};

@@ -9,7 +9,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -190,5 +189,4 @@ TEST(Verdict, names_the_limit_that_held_the_tool_back_and_what_helps)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -18,18 +18,16 @@ namespace tactus::test
 {
 
 /// Hand at the origin.
-class OperatorAtRest final : public OperatorMotion
+struct OperatorAtRest final : OperatorMotion
 {
-public:
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return Vec3::Zero(); }
 };
 
 /// Device under test, with a hand that holds it loosely at one place, and controlled time: nothing
 /// happens between two calls of next().
-class DeviceRig
+struct DeviceRig
 {
-public:
     virtual ~DeviceRig() = default;
     [[nodiscard]] virtual HapticDevice& device() noexcept = 0;
     /// Advances one period under the last written force, then reads once.
@@ -46,9 +44,8 @@ protected:
 };
 
 /// Simulated device of any class; its wrapper must keep its promises too.
-class SimulatedRig final : public DeviceRig
+struct SimulatedRig final : DeviceRig
 {
-public:
     explicit SimulatedRig(const DeviceLimits& limits = kDeskClass)
     {
         SimulatedDeviceOptions options;
@@ -66,9 +63,8 @@ private:
 };
 
 /// Rig with a recording of a hand at rest.
-class ReplayRig final : public DeviceRig
+struct ReplayRig final : DeviceRig
 {
-public:
     [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
     [[nodiscard]] DeviceSample next() override { return device_->read(); }
     [[nodiscard]] bool gives_way() const override { return false; }

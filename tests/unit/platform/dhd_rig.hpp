@@ -17,9 +17,8 @@ namespace tactus::test
 {
 
 /// Stand-in library that DhdDevice also finds: one library of one path is loaded once.
-class LoadedStandIn
+struct LoadedStandIn
 {
-public:
     LoadedStandIn() : handle_(dlopen(TACTUS_STAND_IN_DHD, RTLD_NOW | RTLD_LOCAL))
     {
         EXPECT_NE(handle_, nullptr);
@@ -37,9 +36,8 @@ private:
 };
 
 /// DhdDevice on the stand-in, in lock step.
-class DhdRig final : public DeviceRig
+struct DhdRig final : DeviceRig
 {
-public:
     DhdRig()
     {
         DhdDeviceOptions options;

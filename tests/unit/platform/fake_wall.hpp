@@ -36,9 +36,8 @@ inline Shape join(Shape a, Shape b)
 }
 
 /// Sphere on a spring that follows the device, but never into the shape.
-class FakeWall
+struct FakeWall
 {
-public:
     FakeWall(Shape shape, double stiffness_n_per_m, double tool_radius_m, const Vec3& start)
         : shape_(std::move(shape))
         , stiffness_(stiffness_n_per_m)

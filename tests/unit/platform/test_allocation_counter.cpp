@@ -16,7 +16,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -38,9 +37,8 @@ HeapCalls calls_during(const std::function<void()>& work)
     return {after.allocations - before.allocations, after.frees - before.frees};
 }
 
-class AllocationCounter : public testing::Test
+struct AllocationCounter : testing::Test
 {
-protected:
     void SetUp() override
     {
         if (!allocation_counter::available())
@@ -165,5 +163,4 @@ TEST_F(AllocationCounter, passes_alignment_and_refusals_on)
 }
 
 } // namespace
-
 } // namespace tactus

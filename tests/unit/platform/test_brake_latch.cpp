@@ -12,7 +12,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -138,5 +137,4 @@ TEST(BrakeLatch, ends_on_at_once_or_off_when_a_brake_and_a_release_meet)
 }
 
 } // namespace
-
 } // namespace tactus

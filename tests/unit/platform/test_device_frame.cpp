@@ -11,7 +11,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -116,5 +115,4 @@ TEST(DeviceFrame, refuses_places_and_scales_out_of_range)
 }
 
 } // namespace
-
 } // namespace tactus

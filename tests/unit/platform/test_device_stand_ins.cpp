@@ -19,9 +19,8 @@ namespace
 {
 
 /// Hand that moves along x by a millimetre each period.
-class OperatorThatWalks final : public OperatorMotion
+struct OperatorThatWalks final : OperatorMotion
 {
-public:
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
     {

@@ -13,16 +13,14 @@
 
 namespace tactus
 {
-
 namespace
 {
 
 using test::LoadedStandIn;
 using test::StandInDhdDevice;
 
-class DhdDeviceTest : public testing::Test
+struct DhdDeviceTest : testing::Test
 {
-protected:
     DhdDeviceTest()
     {
         options.library = TACTUS_STAND_IN_DHD;
@@ -313,5 +311,4 @@ TEST_F(DhdDeviceTest, leaves_the_device_without_a_force_and_closed)
 }
 
 } // namespace
-
 } // namespace tactus

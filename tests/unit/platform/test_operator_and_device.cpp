@@ -11,7 +11,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

@@ -16,7 +16,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -420,5 +419,4 @@ TEST(OperatorMotions, tremor_is_the_script_with_swings_of_8_to_12_hz_by_its_seed
 }
 
 } // namespace
-
 } // namespace tactus

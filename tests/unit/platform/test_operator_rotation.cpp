@@ -9,7 +9,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -156,5 +155,4 @@ TEST(Rotations, are_the_same_as_quaternions)
 }
 
 } // namespace
-
 } // namespace tactus

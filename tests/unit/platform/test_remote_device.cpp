@@ -15,7 +15,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -32,9 +31,8 @@ DeviceInfo some_device()
 }
 
 /// Both halves on one thread, in virtual time.
-class TwoHalves : public RemoteDevice
+struct TwoHalves : RemoteDevice
 {
-public:
     explicit TwoHalves(const Clock& clock) : RemoteDevice(some_device(), {}, {}, clock) {}
 
     using RemoteDevice::command;
@@ -42,9 +40,8 @@ public:
     using RemoteDevice::publish;
 };
 
-class RemoteDeviceTest : public testing::Test
+struct RemoteDeviceTest : testing::Test
 {
-protected:
     void arrive(double x_m, bool is_new = false, bool valid = true)
     {
         DeviceReading reading;
@@ -302,5 +299,4 @@ TEST(InfoFault, finds_each_value_that_is_out_of_range)
 }
 
 } // namespace
-
 } // namespace tactus

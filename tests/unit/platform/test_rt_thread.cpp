@@ -23,7 +23,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -409,5 +408,4 @@ TEST(RtThread, runs_without_privilege_when_allowed_and_lists_both_refusals)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -14,7 +14,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -655,5 +654,4 @@ TEST(SceneMailbox, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it
 }
 
 } // namespace
-
 } // namespace tactus

@@ -17,14 +17,12 @@
 
 namespace tactus
 {
-
 namespace
 {
 
 /// Service manager that listens at a path, or in the abstract namespace if `name` begins with '@'.
-class Manager
+struct Manager
 {
-public:
     explicit Manager(const std::string& name) : socket_(socket(AF_UNIX, SOCK_DGRAM, 0))
     {
         sockaddr_un address{};
@@ -139,5 +137,4 @@ TEST(ServiceNotify, does_nothing_without_a_manager_or_with_one_that_is_gone)
 }
 
 } // namespace
-
 } // namespace tactus

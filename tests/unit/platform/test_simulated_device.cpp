@@ -10,14 +10,12 @@
 
 namespace tactus
 {
-
 namespace
 {
 
 /// Hand that rests at the origin, jumps to `target` in the first frame and stays.
-class OperatorThatJumps final : public OperatorMotion
+struct OperatorThatJumps final : OperatorMotion
 {
-public:
     explicit OperatorThatJumps(const Vec3& target) : target_(target) {}
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return target_; }
@@ -27,9 +25,8 @@ private:
 };
 
 /// Hand that moves at constant speed along x.
-class OperatorThatPulls final : public OperatorMotion
+struct OperatorThatPulls final : OperatorMotion
 {
-public:
     explicit OperatorThatPulls(double step_m) : step_m_(step_m) {}
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
@@ -298,5 +295,4 @@ TEST(SimulatedDevice, refuses_a_watchdog_without_a_clock_or_without_a_time)
 }
 
 } // namespace
-
 } // namespace tactus

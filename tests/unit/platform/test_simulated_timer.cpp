@@ -8,7 +8,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -115,5 +114,4 @@ TEST(SimulatedClock, moves_only_when_told_to)
 }
 
 } // namespace
-
 } // namespace tactus

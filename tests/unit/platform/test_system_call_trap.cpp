@@ -16,7 +16,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -210,5 +209,4 @@ TEST(SystemCallTrap, counts_once_when_it_was_set_twice)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -14,15 +14,13 @@
 /// around it are checked.
 namespace tactus::test
 {
-
 namespace
 {
 
 using Machines = testing::Types<PosixMachine, SimulatedMachine>;
 
-class NameOfMachine
+struct NameOfMachine
 {
-public:
     template <typename T>
     static std::string GetName(int /*number*/)
     {
@@ -31,9 +29,8 @@ public:
 };
 
 template <typename T>
-class ClockConformance : public testing::Test
+struct ClockConformance : testing::Test
 {
-protected:
     T machine;
     const Clock& sut = machine.clock();
 };
@@ -77,9 +74,8 @@ struct WatchedCycle
 };
 
 template <typename T>
-class PeriodicTimerConformance : public testing::Test
+struct PeriodicTimerConformance : testing::Test
 {
-protected:
     static constexpr Duration kPeriod = milliseconds(2);
     static constexpr Duration kMargin = microseconds(200);
 
@@ -351,5 +347,4 @@ TYPED_TEST(PeriodicTimerConformance, works_when_the_sleep_is_left_out)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -14,7 +14,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -37,9 +36,8 @@ DeviceInfo desk()
     return info;
 }
 
-class UdpDeviceTest : public testing::Test
+struct UdpDeviceTest : testing::Test
 {
-protected:
     UdpDeviceTest()
     {
         options.clock = &clock;
@@ -424,5 +422,4 @@ TEST_F(UdpDeviceTest, of_version_1_is_answered_in_its_version)
 }
 
 } // namespace
-
 } // namespace tactus

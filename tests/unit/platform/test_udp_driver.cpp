@@ -14,7 +14,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -25,9 +24,8 @@ bool has_python()
 }
 
 /// Driver that runs until stop() or the destructor kills it.
-class Driver
+struct Driver
 {
-public:
     Driver(const std::string& script, std::uint16_t port)
     {
         const std::string text = std::to_string(port); // Converted here: a child must not allocate.
@@ -128,5 +126,4 @@ TEST(UdpDriver, of_the_examples_attaches_obeys_dies_and_attaches_again)
 }
 
 } // namespace
-
 } // namespace tactus

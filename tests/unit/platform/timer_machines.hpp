@@ -13,9 +13,8 @@
 namespace tactus::test
 {
 
-class Machine
+struct Machine
 {
-public:
     virtual ~Machine() = default;
     [[nodiscard]] virtual PeriodicTimer& timer() = 0;
     [[nodiscard]] virtual const Clock& clock() = 0;
@@ -23,9 +22,8 @@ public:
     virtual void pass(Duration duration) = 0;
 };
 
-class PosixMachine final : public Machine
+struct PosixMachine final : Machine
 {
-public:
     PeriodicTimer& timer() override { return timer_; }
     const Clock& clock() override { return clock_; }
     void pass(Duration duration) override
@@ -38,9 +36,8 @@ private:
     PosixPeriodicTimer timer_;
 };
 
-class SimulatedMachine final : public Machine
+struct SimulatedMachine final : Machine
 {
-public:
     PeriodicTimer& timer() override { return timer_; }
     const Clock& clock() override { return clock_; }
     void pass(Duration duration) override { clock_.advance(duration); }

@@ -22,9 +22,8 @@ namespace tactus::test
 
 /// Protocol side of a device program. It has no time limits, so that tests do not depend on the
 /// machine's speed.
-class UdpPeer
+struct UdpPeer
 {
-public:
     UdpPeer(const udp::Endpoint& controller, std::uint64_t instance)
         : controller_(controller), instance_(instance)
     {
@@ -106,9 +105,8 @@ private:
 };
 
 /// Simulated device that follows the protocol's commands.
-class ObedientDevice
+struct ObedientDevice
 {
-public:
     [[nodiscard]] const DeviceInfo& info() const noexcept { return device_->info(); }
 
     [[nodiscard]] DeviceSample next(DeviceState state, const Wrench& wrench)
@@ -140,9 +138,8 @@ inline RemoteTimes patient_times()
 }
 
 /// UdpDevice with a simulated device at the other end, in lock step.
-class UdpRig final : public DeviceRig
+struct UdpRig final : DeviceRig
 {
-public:
     explicit UdpRig(const DeviceFrame& frame = {})
     {
         UdpDeviceOptions options;

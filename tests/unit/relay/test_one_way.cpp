@@ -17,7 +17,6 @@
 
 namespace tactus::relay
 {
-
 namespace
 {
 
@@ -183,5 +182,4 @@ TEST(FrameContent, tells_payloads_of_udp_from_headers_also_in_fragments)
 }
 
 } // namespace
-
 } // namespace tactus::relay

@@ -23,9 +23,8 @@ namespace
 constexpr std::chrono::seconds kPatience{60};
 
 /// Link that owns the one that it disturbs.
-class FaultyLink final : public ChunkLink
+struct FaultyLink final : ChunkLink
 {
-public:
     FaultyLink(std::unique_ptr<ChunkLink> wrapped, const LoopbackFaults& faults)
         : wrapped_(std::move(wrapped)), loopback_(*wrapped_, faults)
     {

@@ -12,14 +12,12 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
 /// Queries by places of the source mesh.
-class InsideRig
+struct InsideRig
 {
-public:
     InsideRig(const std::string& name, const TriangleMesh& mesh)
         : served_(serve_from_file(test_model(name, mesh, 2'000).path, name, {}).value())
         , header_(ModelHeader::parse(served_.header).value())
@@ -86,5 +84,4 @@ TEST(InsideTest, finds_nothing_inside_a_model_whose_base_mesh_is_not_here)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -16,7 +16,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -174,5 +173,4 @@ TEST(PoolPlan, of_eight_models_of_200_000_faces_and_four_tools_takes_2_mib_at_mo
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -24,9 +24,8 @@ namespace
 
 using test::eventually;
 
-class Lanes : public ::testing::Test
+struct Lanes : ::testing::Test
 {
-protected:
     static constexpr const char* kPartition = "lanes";
 
     void SetUp() override

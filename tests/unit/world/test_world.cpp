@@ -25,7 +25,6 @@
 /// Worlds in a loop of one's own.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -454,5 +453,4 @@ TEST(World, shows_viewers_its_hands_and_objects_with_their_names)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -27,7 +27,6 @@
 /// Worlds whose models change while they are touched.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -372,5 +371,4 @@ TEST(WorldEdits, edits_that_no_frame_takes_are_refused_in_the_end)
 }
 
 } // namespace
-
 } // namespace tactus::test
