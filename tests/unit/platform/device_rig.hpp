@@ -10,6 +10,7 @@
 #include "platform/devices/simulated/replay_device.hpp"
 #include "platform/devices/simulated/simulated_device.hpp"
 
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -23,6 +24,26 @@ struct OperatorAtRest final : OperatorMotion
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return Vec3::Zero(); }
 };
+
+/// Hand whose place is a law of the frame; it begins at the origin.
+struct OperatorByLaw final : OperatorMotion
+{
+    explicit OperatorByLaw(std::function<Vec3(double frame)> place_m) : law_m(std::move(place_m)) {}
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
+    {
+        return law_m(static_cast<double>(sense.frame));
+    }
+
+    std::function<Vec3(double frame)> law_m;
+};
+
+/// Hand that moves at constant speed along x, by `step_m` each period.
+inline std::unique_ptr<OperatorMotion> operator_along_x(double step_m)
+{
+    return std::make_unique<OperatorByLaw>([=](double frame)
+                                           { return Vec3(step_m * frame, 0.0, 0.0); });
+}
 
 /// Device under test, with a hand that holds it loosely at one place, and controlled time: nothing
 /// happens between two calls of next().

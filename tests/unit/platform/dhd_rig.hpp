@@ -35,6 +35,16 @@ private:
     StandInDhd* stand_in_{nullptr};
 };
 
+/// Waits until two turns of the device's thread have begun, with a whole one between.
+inline void await_turn(const StandInDhdDevice& hand)
+{
+    const std::uint64_t now = hand.reads;
+    while (hand.reads < now + 2)
+    {
+        std::this_thread::yield();
+    }
+}
+
 /// DhdDevice on the stand-in, in lock step.
 struct DhdRig final : DeviceRig
 {
@@ -56,22 +66,13 @@ struct DhdRig final : DeviceRig
     [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
     [[nodiscard]] DeviceSample next() override
     {
-        await_turn();
+        await_turn(hand());
         hand().step();
-        await_turn();
+        await_turn(hand());
         return device_->read();
     }
     [[nodiscard]] bool turns() const override { return false; }
     [[nodiscard]] StandInDhdDevice& hand() { return stand_in_->devices.at(index_); }
-    /// Waits for a whole turn, which lies between two readings from now on.
-    void await_turn()
-    {
-        const std::uint64_t now = hand().reads;
-        while (hand().reads < now + 2)
-        {
-            std::this_thread::yield();
-        }
-    }
 
 private:
     PosixClock clock_;

@@ -18,19 +18,9 @@ namespace tactus
 namespace
 {
 
-/// Hand that moves along x by a millimetre each period.
-struct OperatorThatWalks final : OperatorMotion
-{
-    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
-    {
-        return {1e-3 * static_cast<double>(sense.frame), 0.0, 0.0};
-    }
-};
-
 std::unique_ptr<SimulatedDevice> walking_device()
 {
-    return std::move(SimulatedDevice::create({}, std::make_unique<OperatorThatWalks>())).value();
+    return std::move(SimulatedDevice::create({}, test::operator_along_x(1e-3))).value();
 }
 
 std::vector<DeviceSample> readings(HapticDevice& device, std::size_t count = 30)

@@ -78,15 +78,7 @@ struct DhdDeviceTest : testing::Test
         return {hand().force_n, hand().torque_nm, hand().grip_n, hand().brakes,
                 hand().forces_enabled};
     }
-    /// Waits until two turns have begun, with a whole one between.
-    void await_turn()
-    {
-        const std::uint64_t now = hand().reads;
-        while (hand().reads < now + 2)
-        {
-            std::this_thread::yield();
-        }
-    }
+    void await_turn() { test::await_turn(hand()); }
 
     PosixClock clock;
     LoadedStandIn stand_in;

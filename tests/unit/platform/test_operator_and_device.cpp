@@ -39,6 +39,15 @@ std::string refusal(const OperatorAndDeviceOptions& options)
 
 const Vec3 kHome(0, 0, 0);
 
+/// Steps under one force, with the hand's target at home.
+void steps(OperatorAndDevice& sut, const Vec3& force_n, int count)
+{
+    for (int i = 0; i < count; ++i)
+    {
+        sut.step(force_n, kHome);
+    }
+}
+
 } // namespace
 
 TEST(OperatorAndDevice, swings_as_two_masses_on_a_spring_do)
@@ -64,10 +73,7 @@ TEST(OperatorAndDevice, its_brake_adds_damping_until_it_is_released)
     OperatorAndDeviceOptions options = free_mass();
     options.device.damping_n_s_per_m = 1.0;
     OperatorAndDevice sut = make(options);
-    for (int i = 0; i < 100; ++i)
-    {
-        sut.step(Vec3(2.0, 0, 0), kHome);
-    }
+    steps(sut, Vec3(2.0, 0, 0), 100);
     const double before = sut.velocity_m_per_s().x();
     sut.brake(9.0);
     for (int i = 1; i <= 50; ++i)
@@ -89,21 +95,12 @@ TEST(OperatorAndDevice, is_held_still_by_friction_and_no_longer)
     OperatorAndDeviceOptions options = free_mass();
     options.device.friction_n = 1.0;
     OperatorAndDevice sut = make(options);
-    for (int i = 0; i < 100; ++i)
-    {
-        sut.step(Vec3(0.6, 0.0, 0.79), kHome); // 0.992 N.
-    }
+    steps(sut, Vec3(0.6, 0.0, 0.79), 100); // 0.992 N.
     EXPECT_EQ(sut.position_m(), kHome);
-    for (int i = 0; i < 100; ++i)
-    {
-        sut.step(Vec3(3.0, 0, 0), kHome);
-    }
+    steps(sut, Vec3(3.0, 0, 0), 100);
     EXPECT_NEAR(sut.velocity_m_per_s().x(), 1.0, 1e-12); // (3 - 1) N / 0.2 kg x 0.1 s.
     const double from = sut.position_m().x();
-    for (int i = 0; i < 300; ++i)
-    {
-        sut.step(Vec3(0, 0, 0), kHome);
-    }
+    steps(sut, Vec3(0, 0, 0), 300);
     EXPECT_EQ(sut.velocity_m_per_s(), kHome);
     EXPECT_NEAR(sut.position_m().x() - from, 0.1, 1e-5); // m v^2 / 2 / friction.
     EXPECT_NEAR(sut.energy().friction_loss_j, sut.position_m().x(), 1e-12);

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/devices/simulated/simulated_periodic_timer.hpp"
+#include "tests/unit/platform/device_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,29 +16,10 @@ namespace
 {
 
 /// Hand that rests at the origin, jumps to `target` in the first frame and stays.
-struct OperatorThatJumps final : OperatorMotion
+std::unique_ptr<OperatorMotion> operator_that_jumps(const Vec3& target = Vec3::Zero())
 {
-    explicit OperatorThatJumps(const Vec3& target) : target_(target) {}
-    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return target_; }
-
-private:
-    Vec3 target_;
-};
-
-/// Hand that moves at constant speed along x.
-struct OperatorThatPulls final : OperatorMotion
-{
-    explicit OperatorThatPulls(double step_m) : step_m_(step_m) {}
-    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
-    {
-        return Vec3::UnitX() * (step_m_ * static_cast<double>(sense.frame));
-    }
-
-private:
-    double step_m_;
-};
+    return std::make_unique<test::OperatorByLaw>([=](double) { return target; });
+}
 
 std::unique_ptr<SimulatedDevice> make(const SimulatedDeviceOptions& options,
                                       std::unique_ptr<OperatorMotion> hand)
@@ -47,8 +29,7 @@ std::unique_ptr<SimulatedDevice> make(const SimulatedDeviceOptions& options,
 
 std::string refusal(const SimulatedDeviceOptions& options)
 {
-    const auto made =
-        SimulatedDevice::create(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    const auto made = SimulatedDevice::create(options, operator_that_jumps());
     return made ? std::string() : made.error().text;
 }
 
@@ -58,7 +39,7 @@ constexpr double kArmAndGrip_m_per_n = 1.0 / 200.0 + 1.0 / 2'000.0;
 TEST(SimulatedDevice, settles_where_springs_and_force_balance)
 {
     SimulatedDeviceOptions options;
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3(0.01, 0.02, -0.03)));
+    auto sut = make(options, operator_that_jumps(Vec3(0.01, 0.02, -0.03)));
     DeviceSample sample;
     for (int i = 0; i < 3'000; ++i)
     {
@@ -74,7 +55,7 @@ TEST(SimulatedDevice, a_load_hangs_on_the_hand_until_it_is_carried)
 {
     SimulatedDeviceOptions options;
     options.load = {0.1, Vec3(0.02, 0.0, 0.0), Vec3(0.0, 0.0, -1.0)};
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     const auto settle = [&](const Wrench& wrench)
     {
         DeviceSample sample;
@@ -99,7 +80,7 @@ TEST(SimulatedDevice, a_load_hangs_on_the_hand_until_it_is_carried)
 TEST(SimulatedDevice, trails_a_moving_hand_by_its_own_drag)
 {
     SimulatedDeviceOptions options;
-    auto sut = make(options, std::make_unique<OperatorThatPulls>(1e-4)); // 0.1 m/s.
+    auto sut = make(options, test::operator_along_x(1e-4)); // 0.1 m/s.
     DeviceSample sample;
     for (int i = 0; i <= 3'000; ++i)
     {
@@ -114,7 +95,7 @@ TEST(SimulatedDevice, its_brake_drops_a_force_that_is_still_under_way)
 {
     SimulatedDeviceOptions options;
     options.device.delay_s = 5e-3;
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     for (int i = 0; i < 3; ++i)
     {
         static_cast<void>(sut->read());
@@ -131,8 +112,8 @@ TEST(SimulatedDevice, repeats_bit_for_bit_and_takes_its_time_from_the_frame)
 {
     SimulatedDeviceOptions options;
     options.rate_hz = 3'000; // The period is not a whole number of nanoseconds.
-    auto one = make(options, std::make_unique<OperatorThatPulls>(1e-5));
-    auto two = make(options, std::make_unique<OperatorThatPulls>(1e-5));
+    auto one = make(options, test::operator_along_x(1e-5));
+    auto two = make(options, test::operator_along_x(1e-5));
     for (std::int64_t i = 0; i <= 3'000; ++i)
     {
         const DeviceSample a = one->read();
@@ -208,7 +189,7 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
     options.hand.grip_stiffness_n_per_m = 0.0; // The hand does not hold it.
     options.hand.grip_damping_n_s_per_m = 0.0;
     options.device.damping_n_s_per_m = 7.0; // The device comes to rest soon.
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     DeviceSample before;
     for (int i = 0; i < 500; ++i)
     {
@@ -251,7 +232,7 @@ TEST(SimulatedDevice, tells_that_its_watchdog_has_ended_the_force_until_the_next
     SimulatedDeviceOptions options;
     options.clock = &clock;
     options.watchdog = milliseconds(5);
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     static_cast<void>(sut->read());
     sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
     clock.advance(milliseconds(5) - nanoseconds(1));
@@ -271,7 +252,7 @@ TEST(SimulatedDevice, with_a_clock_counts_true_periods_and_catches_up_on_one_sec
     SimulatedDeviceOptions options;
     options.rate_hz = 3'000;
     options.clock = &clock;
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     EXPECT_EQ(sut->read().time.ns, 0);
     EXPECT_EQ(sut->read().time.ns, 333'333); // Every reading is one period, however early.
     clock.advance(milliseconds(10));

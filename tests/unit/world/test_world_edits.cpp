@@ -114,11 +114,7 @@ TEST(WorldEdits, a_tool_loses_its_support_and_finds_the_floor_of_the_hole)
     const auto carved = carve_hole(part);
     ASSERT_TRUE(carved) << carved.error().text;
     EXPECT_NEAR(carved.value(), kHole_m3, 1e-3 * kHole_m3);
-    HandState state;
-    for (int i = 0; i < 200; ++i)
-    {
-        state = hand.step(above(kRadius_m - kPress_m)).value();
-    }
+    HandState state = hold(hand, above(kRadius_m - kPress_m), 200);
     EXPECT_FALSE(state.in_contact);
     EXPECT_EQ(state.force_n[2], 0.0);
 

@@ -60,6 +60,17 @@ inline HandState press(const Hand& hand, double height_m, int frames = 600)
     return state;
 }
 
+/// Holds the hand at a place for some frames.
+inline HandState hold(const Hand& hand, const HandPose& place, int frames)
+{
+    HandState state;
+    for (int i = 0; i < frames; ++i)
+    {
+        state = hand.step(place).value();
+    }
+    return state;
+}
+
 /// Text of a refusal; empty if the call was not refused.
 template <typename Value>
 std::string line_of(const Result<Value, Refusal>& result)
