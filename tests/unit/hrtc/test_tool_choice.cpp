@@ -14,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <string>
 
 namespace tactus::hrtc::test
