@@ -397,17 +397,6 @@ TEST(HapticLoopDeathTest, an_assertion_on_the_haptic_thread_fades_the_last_force
     set_assert_handler(nullptr);
 }
 
-TEST(HapticLoop, a_bug_of_another_thread_brakes_at_once_and_nobody_releases_it)
-{
-    LoopRig rig(when_settled([](LoopRig& running)
-                             { std::thread([&running] { running.loop().fail(); }).join(); }));
-    rig.run();
-    EXPECT_TRUE(rig.loop().has_failed());
-    EXPECT_EQ(rig.loop().frames_done(), kSettled + 1);
-    EXPECT_EQ(rig.device().status().state, DeviceState::brake);
-    EXPECT_EQ(rig.device().felt_n().norm(), 0.0);
-}
-
 TEST(HapticLoop, a_release_that_has_begun_does_not_undo_the_brake_of_a_bug)
 {
     // The supervisor brakes; the loop releases it.

@@ -47,21 +47,6 @@ TEST(FrameTap, has_nothing_before_a_frame_was_recorded)
     EXPECT_EQ(sut.lost_from(), kNoFrame);
 }
 
-TEST(FrameTap, gives_frames_in_order)
-{
-    FrameTap sut(64);
-    FrameDecoder decoder(kExampleShape);
-    ExampleFrame frame;
-    for (const std::int64_t number : {1, 2, 3})
-    {
-        record(sut, frame, number);
-    }
-    EXPECT_EQ(take_all(sut, decoder), (std::vector<std::int64_t>{1, 2, 3}));
-    record(sut, frame, 4);
-    EXPECT_EQ(take_all(sut, decoder), std::vector<std::int64_t>{4});
-    EXPECT_EQ(sut.lost_from(), kNoFrame);
-}
-
 TEST(FrameTap, loses_all_frames_from_the_first_that_finds_no_room)
 {
     ExampleFrame frame;
