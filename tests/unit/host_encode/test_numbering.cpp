@@ -255,24 +255,6 @@ void check_cell(const QuantisedMesh& mesh, const std::vector<std::uint32_t>& buc
     check_cell(mesh, buckets, {middle, faces.end()}, first_rank + static_cast<std::uint32_t>(left));
 }
 
-TEST(LeftFullOrder, fills_every_bucket_but_the_last_with_eight_faces)
-{
-    for (const auto& model : sample_models())
-    {
-        const std::vector<std::uint32_t> sut = left_full_buckets(model->prepared.mesh);
-        std::vector<std::uint32_t> fill((sut.size() + 7) / 8);
-        for (const std::uint32_t bucket : sut)
-        {
-            ASSERT_LT(bucket, fill.size()) << model->name;
-            ++fill[bucket];
-        }
-        for (std::size_t bucket = 0; bucket + 1 < fill.size(); ++bucket)
-        {
-            EXPECT_EQ(fill[bucket], 8U) << model->name << ", bucket " << bucket;
-        }
-    }
-}
-
 TEST(LeftFullOrder, agrees_with_sorting_every_cell)
 {
     for (const auto& model : sample_models())
