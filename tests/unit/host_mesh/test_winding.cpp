@@ -69,21 +69,6 @@ TriangleMesh bounded()
     return mesh;
 }
 
-TriangleMesh joined(std::initializer_list<TriangleMesh> parts)
-{
-    TriangleMesh all;
-    for (const TriangleMesh& part : parts)
-    {
-        const auto first = static_cast<std::uint32_t>(all.positions.size());
-        all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
-        for (const Face& f : part.faces)
-        {
-            all.faces.push_back({first + f[0], first + f[1], first + f[2]});
-        }
-    }
-    return all;
-}
-
 TriangleMesh turned(TriangleMesh mesh)
 {
     for (Face& face : mesh.faces)
