@@ -102,7 +102,7 @@ TEST(PrintAssertionsDeathTest, says_what_failed_and_where_before_the_process_sto
             print_failed_assertions();
             TACTUS_ASSERT(1 + 1 == 3);
         },
-        "assertion failed: 1 \\+ 1 == 3 \\(.*test_program_log.cpp:[0-9]+\\)");
+        "assertion failed: 1 \\+ 1 == 3 \\(.*test_texts.cpp:[0-9]+\\)");
 }
 
 TEST(PrintAssertionsDeathTest, leaves_a_program_its_own_handler)
