@@ -196,25 +196,25 @@ std::vector<std::pair<std::uint32_t, std::uint64_t>> pages_of(Frame& frame)
 /// The greatest number.
 constexpr std::size_t kSlots = kMaxStatePages;
 /// The last frame is the first of a hundred.
-constexpr std::uint64_t kFrames = 9 * RefinementStateTap::kFrames + 1;
+constexpr std::uint64_t kTappedFrames = 9 * RefinementStateTap::kFrames + 1;
 
 TEST(RefinementStateTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is_split)
 {
     LoopRig rig({.meanwhile =
                      [](LoopRig& running, std::uint64_t frame)
                  {
-                     if (frame == kFrames - 2)
+                     if (frame == kTappedFrames - 2)
                      {
                          running.front().give_back(); // State of the first frame; the last one
                      }                                // makes the next.
                  },
-                 .frames = kFrames,
+                 .frames = kTappedFrames,
                  .front_slots = kSlots});
     EXPECT_EQ(rig.front().take(), nullptr);
     rig.run();
     const RefinementStateCopy* copy = rig.front().take();
     ASSERT_NE(copy, nullptr);
-    EXPECT_EQ(copy->frame, kFrames);
+    EXPECT_EQ(copy->frame, kTappedFrames);
     std::vector<std::pair<std::uint32_t, std::uint64_t>> pages;
     std::uint64_t split = 0;
     for (const ShownPage& slot : copy->slots)
@@ -230,7 +230,7 @@ TEST(RefinementStateTap, copies_the_pages_of_one_frame_in_a_hundred_with_what_is
     EXPECT_NE(split, 0U);
     EXPECT_EQ(copy->slots_left_out, 0U);
     ASSERT_EQ(copy->tools.size(), 1U);
-    EXPECT_EQ(copy->times[kStages].count, kFrames);
+    EXPECT_EQ(copy->times[kStages].count, kTappedFrames);
 }
 
 TEST(RefinementStateTap, leaves_a_copy_alone_until_it_is_given_back)
@@ -244,7 +244,7 @@ TEST(RefinementStateTap, leaves_a_copy_alone_until_it_is_given_back)
                          first = running.front().take()->slots;
                      }
                  },
-                 .frames = kFrames,
+                 .frames = kTappedFrames,
                  .front_slots = kSlots});
     RefinementStateTap& sut = rig.front();
     rig.run();
@@ -259,7 +259,7 @@ TEST(RefinementStateTap, leaves_a_copy_alone_until_it_is_given_back)
 
 TEST(RefinementStateTap, starts_from_what_is_there_when_it_is_made)
 {
-    LoopRig rig({.frames = kFrames});
+    LoopRig rig({.frames = kTappedFrames});
     rig.loop().run();
     PagePool& pages = rig.frame().pools().cache.pages;
     std::vector<ShownPage> there(pages.metas.begin(), pages.metas.end());
