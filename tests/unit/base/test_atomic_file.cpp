@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <span>
 #include <string>
 #include <sys/resource.h>
@@ -21,7 +20,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -286,12 +284,10 @@ TEST(AtomicFile, leaves_an_ignored_signal_ignored)
 }
 
 } // namespace
-
 } // namespace tactus::test
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -324,5 +320,4 @@ TEST(FilesNear, lists_what_else_the_folder_has)
 }
 
 } // namespace
-
 } // namespace tactus

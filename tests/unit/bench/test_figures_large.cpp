@@ -12,7 +12,6 @@
 
 namespace tactus::bench
 {
-
 namespace
 {
 
@@ -44,5 +43,4 @@ TEST(LargeModel, takes_few_splits_and_bytes_until_an_answer_is_exact)
 }
 
 } // namespace
-
 } // namespace tactus::bench

@@ -10,7 +10,6 @@
 
 namespace tactus::doctor
 {
-
 namespace
 {
 

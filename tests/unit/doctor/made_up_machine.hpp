@@ -12,9 +12,8 @@ namespace tactus::doctor
 {
 
 /// Machine with only the content that a test adds, in a folder that is removed with it.
-class MadeUpMachine
+struct MadeUpMachine
 {
-public:
     MadeUpMachine();
     ~MadeUpMachine();
     MadeUpMachine(const MadeUpMachine&) = delete;

@@ -10,7 +10,6 @@
 
 namespace tactus::doctor
 {
-
 namespace
 {
 
@@ -120,5 +119,4 @@ TEST(DoctorReport, loses_no_letter_where_it_breaks_lines)
 }
 
 } // namespace
-
 } // namespace tactus::doctor

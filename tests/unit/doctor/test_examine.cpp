@@ -17,7 +17,6 @@
 
 namespace tactus::doctor
 {
-
 namespace
 {
 
@@ -455,5 +454,4 @@ TEST(Examine, only_advises_where_the_loop_runs_all_the_same)
 }
 
 } // namespace
-
 } // namespace tactus::doctor

@@ -7,7 +7,6 @@
 #include "tests/unit/geometry/hull_oracle.hpp"
 #include "tests/unit/geometry/hull_scenes.hpp"
 
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -79,9 +78,8 @@ inline constexpr double kTouching = 1e-17;
 }
 
 /// Points within a radius of a segment, as a convex body: the segment of a sphere has no length.
-class RoundCore
+struct RoundCore
 {
-public:
     explicit RoundCore(const Capsule& capsule)
         : half_(0.5 * (capsule.core.to - capsule.core.from))
         , radius_(capsule.radius)

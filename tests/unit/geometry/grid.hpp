@@ -16,9 +16,8 @@ namespace tactus::test
 /// Corners on a grid of few points, so that they often coincide or are collinear or coplanar; the
 /// grid's placement has no effect on the answers: scaled by a power of two, sheared by whole steps,
 /// or moved so far that differences just fit.
-class Grid
+struct Grid
 {
-public:
     explicit Grid(Random& random)
         : random_(random)
         , steps_(2 + random.below(6))

@@ -14,9 +14,8 @@ namespace tactus::test
 /// vertices span a triangle in the hull, and those with all others on one side form its surface.
 /// The result is the least distance of those triangles, and zero if a corner is inside.
 template <typename Real>
-class HullOracle
+struct HullOracle
 {
-public:
     [[nodiscard]] static Real distance(const std::vector<Vec3>& vertices, const Triangle& triangle)
     {
         if (vertices.size() == 1)

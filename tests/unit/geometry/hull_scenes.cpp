@@ -7,7 +7,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

@@ -20,9 +20,8 @@ using GridTriangle = std::array<GridPoint, 3>;
 /// on a grid share a point if and only if each has weights that add up to one and give the same
 /// point. If there is such a solution there is one on independent columns, and all of those are
 /// tried. No planes, sides or axes are involved. For coordinates up to 100.
-class LinearSystem
+struct LinearSystem
 {
-public:
     static constexpr std::size_t kMaxRows = 7;
     static constexpr std::size_t kMaxColumns = 9;
     using Column = std::array<std::int64_t, kMaxRows>;

@@ -12,7 +12,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -29,9 +28,7 @@ void check(const GjkAnswer& answer, const ClosestPoints& kernel, double length, 
     ASSERT_LE(answer.iterations, kGjkIterations);
 }
 
-class ConvexShapeTest : public ::testing::TestWithParam<PairClass>
-{
-};
+using ConvexShapeTest = ::testing::TestWithParam<PairClass>;
 
 } // namespace
 

@@ -8,13 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace tactus::test
 {
-
 namespace
 {
 

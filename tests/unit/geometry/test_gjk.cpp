@@ -8,7 +8,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -68,9 +67,7 @@ void check_places(const GjkAnswer& answer, const HullScene& scene, double length
     ASSERT_TRUE(answer.upper == 0.0 || answer.gap.norm() <= answer.upper);
 }
 
-class GjkTest : public ::testing::TestWithParam<PairClass>
-{
-};
+using GjkTest = ::testing::TestWithParam<PairClass>;
 
 /// Figures of a whole class, besides those of each case.
 struct Summary

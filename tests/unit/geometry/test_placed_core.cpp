@@ -8,7 +8,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

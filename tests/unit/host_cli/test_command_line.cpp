@@ -19,7 +19,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -272,11 +271,6 @@ TEST(CommandLine, fails_in_one_line_behind_the_name_of_the_program)
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "try: no?file\n");
 }
 
-} // namespace
-
-namespace
-{
-
 /// Output on stderr; checks the exit code.
 std::string said_by(const std::string& hint, const std::function<int()>& body, int code)
 {
@@ -310,5 +304,4 @@ TEST(RunProgram, says_how_much_memory_is_needed_when_it_runs_out)
 }
 
 } // namespace
-
 } // namespace tactus

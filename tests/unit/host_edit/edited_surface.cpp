@@ -16,7 +16,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

@@ -33,9 +33,8 @@ using Soup = std::vector<SoupFace>;
 [[nodiscard]] std::size_t open_edges(const TriangleMesh& mesh);
 
 /// Model's surface as a controller keeps it: faces by id, changed by edits alone.
-class EditedFaces
+struct EditedFaces
 {
-public:
     explicit EditedFaces(const DecodedModel& model, std::uint32_t room);
 
     /// Applies an edit by the rules of a frame; the text of the broken rule, or nothing.

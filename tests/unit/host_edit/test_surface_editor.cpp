@@ -26,7 +26,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -60,9 +59,8 @@ const EditCase kPlate{"plate", [] { return test::make_noisy_plate(12, 3); }};
 const EditCase kSheet{"sheet", [] { return make_shape(Shape::terrain, 1'500).value(); }};
 
 /// An editor with the controller's faces beside it, which every change is applied to.
-class EditRig
+struct EditRig
 {
-public:
     explicit EditRig(const EncodedModel& model, std::uint32_t room = kRoom)
         : header_(model.decoded->header())
         , sut(SurfaceEditor::create(*model.decoded, room).value())
@@ -191,9 +189,7 @@ double tolerance_of(const Sweep& ball, double quantum_m)
 
 } // namespace
 
-class SurfaceEditorTest : public testing::TestWithParam<EditCase>
-{
-};
+using SurfaceEditorTest = testing::TestWithParam<EditCase>;
 
 TEST_P(SurfaceEditorTest, random_sequences_match_the_definition)
 {

@@ -17,7 +17,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

@@ -9,7 +9,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 

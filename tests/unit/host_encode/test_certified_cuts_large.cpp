@@ -13,7 +13,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -44,5 +43,4 @@ TEST(LargeCertifiedCuts, cover_every_well_known_source_at_many_levels)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -16,7 +16,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -156,9 +155,8 @@ TEST(ChunkCoding, the_chunk_of_another_number_is_refused)
 }
 
 /// Encoder that inverts one bit, and continues as if that were the input.
-class BendingEncoder
+struct BendingEncoder
 {
-public:
     explicit BendingEncoder(std::size_t bent) : bent_(bent) {}
 
     std::uint32_t code_bit(Probability& zero, std::uint32_t bit)
@@ -282,5 +280,4 @@ TEST(ChunkErrors, are_never_rounded_down_and_exact_only_when_they_were)
 }
 
 } // namespace
-
 } // namespace tactus

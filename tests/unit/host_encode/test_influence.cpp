@@ -5,6 +5,7 @@
 
 #include "host_tools/encode/influence.hpp"
 #include "host_tools/encode/replay.hpp"
+#include "tests/shared/distance_oracle.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 
 #include <Eigen/Dense>
@@ -16,32 +17,8 @@
 
 namespace tactus
 {
-
 namespace
 {
-
-using Triangle = std::array<Vec3, 3>;
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b)
-{
-    const double length = (b - a).squaredNorm();
-    const double t = length > 0.0 ? std::clamp((p - a).dot(b - a) / length, 0.0, 1.0) : 0.0;
-    return (p - a - t * (b - a)).norm();
-}
-
-/// Least of three segment distances and, if the foot is inside, the plane's.
-double distance_to_triangle(const Vec3& p, const Triangle& t)
-{
-    double least = std::min({distance_to_segment(p, t[0], t[1]), distance_to_segment(p, t[1], t[2]),
-                             distance_to_segment(p, t[2], t[0])});
-    const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
-    bool is_inside = normal.squaredNorm() > 0.0;
-    for (std::size_t i = 0; i < 3; ++i)
-    {
-        is_inside = is_inside && normal.dot((t[(i + 1) % 3] - t[i]).cross(p - t[i])) >= 0.0;
-    }
-    return is_inside ? std::min(least, std::abs(normal.dot(p - t[0])) / normal.norm()) : least;
-}
 
 /// Face that one record splits: its corners before the split, and its bound.
 struct SplitFace
@@ -87,7 +64,7 @@ std::set<std::uint32_t> find_needed(const DecodedModel& model,
     {
         for (const SplitFace& face : split_faces[id])
         {
-            if (distance_to_triangle(centre_m, face.corners) - face.error_m <= radius_m)
+            if (test::DistanceOracle::distance(centre_m, face.corners) - face.error_m <= radius_m)
             {
                 stack.push_back(id);
             }
@@ -255,5 +232,4 @@ TEST(Influence, relative_boxes_are_rounded_outward_and_stay_in_16_bits)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/encode/face_history.hpp"
+#include "host_tools/encode/left_full_order.hpp"
 #include "host_tools/encode/numbering.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
 #include <set>
 
+/// Errors of faces, and the greatest depth.
 namespace tactus
 {
-
 namespace
 {
 
@@ -134,6 +138,140 @@ TEST(Numbering, a_model_without_records_is_all_base)
     EXPECT_EQ(sut.counts.records, 0U);
 }
 
-} // namespace
+TEST(FaceHistory, only_faces_of_the_source_have_error_zero)
+{
+    for (const auto& model : sample_models())
+    {
+        const QuantisedMesh& mesh = model->prepared.mesh;
+        const Numbering numbering = number_model(mesh, model->simplification);
+        const FaceHistory sut = trace_faces(mesh, model->simplification, numbering);
+        // Collapses replayed on corners: a face is original while it has its own corners.
+        std::set<std::uint32_t> changed;
+        for (const Collapse& collapse : model->simplification.collapses)
+        {
+            const StarHistory& star = sut.stars[numbering.record_of(collapse).value];
+            for (std::uint32_t place = 0; place < 2 + collapse.fan_size; ++place)
+            {
+                if (collapse.star[place] == Collapse::kNoFace)
+                {
+                    continue;
+                }
+                EXPECT_EQ(star.error_after[place] == 0, changed.count(collapse.star[place]) == 0)
+                    << model->name << ", face " << collapse.star[place];
+                if (changed.count(collapse.star[place]) != 0)
+                {
+                    EXPECT_GE(static_cast<double>(error_in_quanta(star.error_after[place])),
+                              collapse.error[place]);
+                }
+                if (place >= 2)
+                {
+                    changed.insert(collapse.star[place]);
+                    EXPECT_NE(star.error_before[place - 2], 0) << model->name;
+                }
+            }
+        }
+        for (std::uint32_t id = 0; id < numbering.counts.base_faces; ++id)
+        {
+            const std::uint32_t at = numbering.base_faces[id];
+            const bool is_changed = changed.count(model->simplification.base_faces[at]) != 0;
+            EXPECT_EQ(sut.base_error[id] != 0, is_changed) << model->name << ", base face " << id;
+            EXPECT_GE(static_cast<double>(error_in_quanta(sut.base_error[id])),
+                      model->simplification.base_error[at] * (is_changed ? 1.0F : 0.0F));
+        }
+    }
+}
 
+TEST(FaceHistory, names_the_greatest_bound_and_depth_of_all)
+{
+    for (const auto& model : sample_models())
+    {
+        const Numbering numbering = number_model(model->prepared.mesh, model->simplification);
+        const FaceHistory sut = trace_faces(model->prepared.mesh, model->simplification, numbering);
+        std::uint32_t depth = 0;
+        ErrorCode error = 0;
+        for (const StarHistory& star : sut.stars)
+        {
+            depth = std::max(depth, star.depth);
+            for (const ErrorCode code : star.error_before)
+            {
+                error = std::max(error, code);
+            }
+        }
+        for (const ErrorCode code : sut.base_error)
+        {
+            error = std::max(error, code);
+        }
+        EXPECT_EQ(sut.max_depth, depth) << model->name;
+        EXPECT_EQ(sut.max_error, error) << model->name;
+        EXPECT_LE(depth, model->simplification.rounds) << model->name;
+    }
+}
+
+std::int64_t centroid_sum(const QuantisedMesh& mesh, std::uint32_t face, std::size_t axis)
+{
+    std::int64_t sum = 0;
+    for (const std::uint32_t corner : mesh.faces[face])
+    {
+        sum += mesh.positions[corner][axis];
+    }
+    return sum;
+}
+
+/// Checks by sorting, where the code under test selects the same cells.
+void check_cell(const QuantisedMesh& mesh, const std::vector<std::uint32_t>& buckets,
+                std::vector<std::uint32_t> faces, std::uint32_t first_rank)
+{
+    if (faces.size() <= 8)
+    {
+        for (const std::uint32_t face : faces)
+        {
+            ASSERT_EQ(buckets[face], first_rank / 8) << "face " << face;
+        }
+        return;
+    }
+    std::array<std::int64_t, 3> extents{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+        const auto [low, high] = std::minmax_element(
+            faces.begin(), faces.end(),
+            [&](std::uint32_t a, std::uint32_t b)
+            { return centroid_sum(mesh, a, axis) < centroid_sum(mesh, b, axis); });
+        extents[axis] = centroid_sum(mesh, *high, axis) - centroid_sum(mesh, *low, axis);
+    }
+    const auto axis = static_cast<std::size_t>(std::max_element(extents.begin(), extents.end()) -
+                                               extents.begin());
+    std::sort(faces.begin(), faces.end(),
+              [&](std::uint32_t a, std::uint32_t b) {
+                  return std::pair(centroid_sum(mesh, a, axis), a) <
+                         std::pair(centroid_sum(mesh, b, axis), b);
+              });
+    std::size_t left = 1;
+    while (left * 2 < faces.size())
+    {
+        left *= 2;
+    }
+    const auto middle = faces.begin() + static_cast<std::ptrdiff_t>(left);
+    check_cell(mesh, buckets, {faces.begin(), middle}, first_rank);
+    check_cell(mesh, buckets, {middle, faces.end()}, first_rank + static_cast<std::uint32_t>(left));
+}
+
+TEST(LeftFullOrder, agrees_with_sorting_every_cell)
+{
+    for (const auto& model : sample_models())
+    {
+        const QuantisedMesh& mesh = model->prepared.mesh;
+        const std::vector<std::uint32_t> sut = left_full_buckets(mesh);
+        std::vector<std::uint32_t> all(mesh.faces.size());
+        std::iota(all.begin(), all.end(), 0U);
+        check_cell(mesh, sut, all, 0);
+    }
+}
+
+TEST(LeftFullOrder, a_single_face_is_in_bucket_zero)
+{
+    const QuantisedMesh triangle{{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}, {{0, 1, 2}}};
+    EXPECT_EQ(left_full_buckets(triangle), std::vector<std::uint32_t>{0});
+}
+
+} // namespace
 } // namespace tactus

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+#include "host_tools/encode/replay.hpp"
 #include "host_tools/encode/write_spm.hpp"
 #include "tests/golden/golden_model.hpp"
 #include "tests/shared/temporary_folder.hpp"
@@ -7,14 +8,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <numeric>
+#include <random>
 #include <string>
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -37,25 +39,19 @@ std::string read_back(const std::filesystem::path& path)
     return damage.empty() ? "" : damage.front();
 }
 
-TEST(WriteSpm, the_same_input_gives_the_same_bytes)
+TEST(WriteSpm, the_same_input_gives_the_same_bytes_with_any_number_of_threads)
 {
-    const EncodedModel& model = *sample_models()[1];
-    const std::string first = content_of(model.path);
-    const test::TemporaryFolder folder;
-    ASSERT_TRUE(write_spm(folder.path() / "again.spm", model.prepared, model.simplification, {}));
-    EXPECT_EQ(content_of(folder.path() / "again.spm"), first);
-    EXPECT_EQ(first.size(), model.fields.file_bytes);
-}
-
-TEST(WriteSpm, the_file_does_not_depend_on_the_threads)
-{
-    const EncodedModel& model = *sample_models()[2];
-    const test::TemporaryFolder folder;
-    EncodeOptions options;
-    options.threads = 5;
-    const auto path = folder.path() / "threads.spm";
-    ASSERT_TRUE(write_spm(path, model.prepared, model.simplification, options));
-    EXPECT_EQ(content_of(path), content_of(model.path));
+    for (const unsigned threads : {EncodeOptions{}.threads, 5U})
+    {
+        const EncodedModel& model = *sample_models()[threads == 5 ? 2 : 1];
+        const test::TemporaryFolder folder;
+        EncodeOptions options;
+        options.threads = threads;
+        const auto path = folder.path() / "again.spm";
+        ASSERT_TRUE(write_spm(path, model.prepared, model.simplification, options));
+        EXPECT_EQ(content_of(path), content_of(model.path));
+        EXPECT_EQ(std::filesystem::file_size(path), model.fields.file_bytes);
+    }
 }
 
 TEST(WriteSpm, the_header_describes_the_mesh)
@@ -152,6 +148,58 @@ TEST(WriteSpm, refuses_a_folder_that_is_not_there)
     EXPECT_NE(refused.error().text.find("a.spm"), std::string::npos);
 }
 
-} // namespace
+TEST(Replay, any_order_that_respects_dependencies_gives_the_same_mesh)
+{
+    constexpr unsigned kSeed = 4711;
+    for (const auto& model : sample_models())
+    {
+        Replay expected(*model->decoded);
+        std::vector<RecordId> order = in_dependency_order(*model->decoded);
+        for (const RecordId id : order)
+        {
+            ASSERT_FALSE(expected.split(id)) << model->name;
+        }
+        std::mt19937 random(kSeed);
+        std::shuffle(order.begin(), order.end(), random);
+        Replay sut(*model->decoded);
+        while (!order.empty())
+        {
+            const auto waiting = std::stable_partition(
+                order.begin(), order.end(), [&](RecordId id) { return sut.split(id).has_value(); });
+            ASSERT_NE(waiting, order.end()) << model->name << ", seed " << kSeed;
+            order.erase(waiting, order.end());
+        }
+        const ModelCounts counts = model->decoded->header().counts();
+        for (std::uint32_t face = 0; face < counts.face_ids(); ++face)
+        {
+            EXPECT_EQ(sut.is_active({face}), expected.is_active({face})) << model->name;
+            EXPECT_EQ(sut.corners({face}), expected.corners({face})) << model->name;
+            EXPECT_EQ(sut.state({face}), expected.state({face})) << model->name;
+        }
+    }
+}
 
+TEST(Replay, refuses_a_record_before_its_dependencies_and_changes_nothing)
+{
+    const EncodedModel& model = *sample_models()[0];
+    const RecordId deepest = in_dependency_order(*model.decoded).back();
+    ASSERT_GT(model.decoded->record(deepest).depth, 1U);
+    Replay sut(*model.decoded);
+    const TriangleMesh before = sut.mesh();
+    EXPECT_TRUE(sut.split(deepest));
+    EXPECT_EQ(sut.mesh().positions, before.positions);
+    EXPECT_EQ(sut.mesh().faces, before.faces);
+    EXPECT_EQ(sut.face_count(), model.fields.base_faces);
+}
+
+TEST(Replay, refuses_to_split_a_record_twice)
+{
+    const EncodedModel& model = *sample_models()[0];
+    const RecordId first = in_dependency_order(*model.decoded).front();
+    Replay sut(*model.decoded);
+    ASSERT_FALSE(sut.split(first));
+    EXPECT_TRUE(sut.split(first));
+}
+
+} // namespace
 } // namespace tactus

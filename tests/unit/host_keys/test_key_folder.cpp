@@ -21,7 +21,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -40,9 +39,8 @@ std::string text_in(const fs::path& path)
 }
 
 /// A site whose keys lie in a folder of the test.
-class KeysOfASite : public ::testing::Test
+struct KeysOfASite : ::testing::Test
 {
-protected:
     KeysOfASite()
     {
         site.domain = kDomain;

@@ -11,9 +11,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <fstream>
+#include <initializer_list>
 #include <set>
 #include <string>
 #include <string_view>
@@ -116,6 +115,22 @@ inline double signed_volume(const TriangleMesh& mesh)
                        a[2] * (b[0] * c[1] - b[1] * c[0]);
     }
     return six_volumes / 6.0;
+}
+
+/// Meshes side by side in one.
+inline TriangleMesh joined(std::initializer_list<TriangleMesh> parts)
+{
+    TriangleMesh all;
+    for (const TriangleMesh& part : parts)
+    {
+        const auto first = static_cast<std::uint32_t>(all.positions.size());
+        all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
+        for (const Face& f : part.faces)
+        {
+            all.faces.push_back({first + f[0], first + f[1], first + f[2]});
+        }
+    }
+    return all;
 }
 
 } // namespace tactus::test

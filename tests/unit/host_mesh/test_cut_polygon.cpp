@@ -9,14 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <random>
 
 /// The oracle is the shoelace formula: triangles with the polygon's orientation whose areas add up
 /// to the polygon's cover it once.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -402,5 +400,4 @@ TEST(PolygonSink, notes_only_what_is_wrong)
 }
 
 } // namespace
-
 } // namespace tactus::test

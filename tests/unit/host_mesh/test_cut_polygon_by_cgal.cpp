@@ -20,7 +20,6 @@
 /// Triangles of random simple polygons made by CGAL, checked by CGAL's exact predicates.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -68,5 +67,4 @@ TEST(CutPolygonByCgal, covers_random_simple_polygons_with_triangles_inside_them)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -17,7 +17,6 @@
 /// other kinds.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -464,5 +463,4 @@ TEST(ReadMesh, knows_its_formats_by_name)
 }
 
 } // namespace
-
 } // namespace tactus::test

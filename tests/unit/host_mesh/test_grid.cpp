@@ -16,11 +16,15 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
 using Height = std::function<double(double, double)>;
+
+double slanted(double x, double y)
+{
+    return 0.21 * x + 0.13 * y;
+}
 
 /// Ground of columns x rows squares between two corners.
 TriangleMesh make_ground(unsigned columns, unsigned rows, std::array<double, 2> low,
@@ -175,7 +179,6 @@ TEST(Grid, takes_more_bits_for_edges_of_a_few_steps)
 
 TEST(Grid, takes_no_bits_for_what_has_no_relief)
 {
-    const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
     TriangleMesh ground = make_ground(60, 60, {-0.2, -0.1}, {0, 0.1}, slanted);
     EXPECT_EQ(bits_chosen(ground), 16U);
     TriangleMesh floats = ground;
@@ -224,15 +227,8 @@ TEST(Grid, parts_no_vertex_from_the_edge_it_lies_on)
 {
     // Fine squares to the left of x = 0, coarse ones to the right: three in four vertices of that
     // line are in the interior of a coarse edge.
-    const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
-    TriangleMesh mesh = make_ground(32, 32, {-0.25, -0.125}, {0, 0.125}, slanted);
-    const TriangleMesh coarse = make_ground(8, 8, {0, -0.125}, {0.25, 0.125}, slanted);
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), coarse.positions.begin(), coarse.positions.end());
-    for (const auto& [a, b, c] : coarse.faces)
-    {
-        mesh.faces.push_back({a + first, b + first, c + first});
-    }
+    const TriangleMesh mesh = joined({make_ground(32, 32, {-0.25, -0.125}, {0, 0.125}, slanted),
+                                      make_ground(8, 8, {0, -0.125}, {0.25, 0.125}, slanted)});
     // Sides along the line without an opposite face.
     const auto open_sides = [](const PreparedMesh& sut, double x_m)
     {
@@ -271,19 +267,12 @@ TEST(Grid, parts_no_vertex_from_the_edge_it_lies_on)
 /// Two grounds with the same border, one of them moved along y.
 TriangleMesh make_seam(double off)
 {
-    const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
-    TriangleMesh mesh = make_ground(8, 40, {-0.25, -0.125}, {0, 0.125}, slanted);
-    const TriangleMesh other = make_ground(8, 40, {0, -0.125}, {0.25, 0.125}, slanted);
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const auto& [x, y, z] : other.positions)
+    TriangleMesh other = make_ground(8, 40, {0, -0.125}, {0.25, 0.125}, slanted);
+    for (auto& position : other.positions)
     {
-        mesh.positions.push_back({x, y + off, z});
+        position[1] += off;
     }
-    for (const auto& [a, b, c] : other.faces)
-    {
-        mesh.faces.push_back({a + first, b + first, c + first});
-    }
-    return mesh;
+    return joined({make_ground(8, 40, {-0.25, -0.125}, {0, 0.125}, slanted), other});
 }
 
 TEST(Grid, closes_a_seam_that_the_source_has_rounded_apart)
@@ -329,7 +318,6 @@ TEST(Grid, tells_how_far_vertices_were_moved_before)
 
 TEST(Grid, parts_no_border_from_the_vertices_of_a_mesh_beside_it)
 {
-    const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
     const TriangleMesh fine = make_ground(32, 32, {-0.25, -0.125}, {0, 0.125}, slanted);
     const TriangleMesh coarse = make_ground(8, 8, {0, -0.125}, {0.25, 0.125}, slanted);
     const std::array<double, 3> place{0.25, 0.5, -0.125};
@@ -364,20 +352,13 @@ TEST(Grid, parts_no_border_from_the_vertices_of_a_mesh_beside_it)
 TEST(Grid, leaves_a_border_that_only_comes_near)
 {
     const Height flat = [](double, double) { return 0.0; };
-    TriangleMesh mesh = make_ground(30, 30, {-0.2, -0.1}, {0, 0.1}, flat);
-    const TriangleMesh coarse = make_ground(10, 10, {20e-6, -0.1}, {0.2, 0.1}, flat);
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), coarse.positions.begin(), coarse.positions.end());
-    for (const auto& [a, b, c] : coarse.faces)
-    {
-        mesh.faces.push_back({a + first, b + first, c + first});
-    }
+    const TriangleMesh mesh = joined({make_ground(30, 30, {-0.2, -0.1}, {0, 0.1}, flat),
+                                      make_ground(10, 10, {20e-6, -0.1}, {0.2, 0.1}, flat)});
     EXPECT_EQ(on_its_grid(mesh, {.stitches = true}).stitched_faces, 0U);
 }
 
 TEST(Grid, rounds_equal_positions_of_two_tiles_alike)
 {
-    const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
     const TriangleMesh left = make_ground(40, 40, {-0.2, -0.1}, {0, 0.1}, slanted);
     const TriangleMesh right = make_ground(26, 40, {0, -0.1}, {0.13, 0.1}, slanted);
     const auto border = [](const TriangleMesh& mesh, const PreparedMesh& on_grid)
@@ -452,7 +433,6 @@ TEST(Grid, has_room_for_every_coordinate_wherever_its_place_is)
 
 TEST(Grid, moves_along_with_a_mesh_that_is_centred)
 {
-    const Height slanted = [](double x, double y) { return 0.21 * x + 0.13 * y; };
     const TriangleMesh tile = make_ground(26, 40, {0, -0.1}, {0.13, 0.1}, slanted);
     const std::array<double, 3> place{0.3, -7.1, 2.0};
     const PreparedMesh there = on_its_grid(tile, {.grid_place_m = place});

@@ -10,7 +10,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -65,15 +64,6 @@ TEST(Checker, tells_manifold_from_not)
     EXPECT_FALSE(is_manifold_with_borders(cone_and_flap, 7));
 }
 
-TEST(Manifold, leaves_a_manifold_mesh_as_it_is)
-{
-    auto faces = tetrahedron().faces;
-    const auto sut = detail::split_into_manifold(faces, 4);
-    EXPECT_EQ(faces, tetrahedron().faces);
-    EXPECT_EQ(sut.cut_edges, 0U);
-    EXPECT_TRUE(sut.copy_of.empty());
-}
-
 TEST(Manifold, cuts_a_book_of_three_pages_at_its_spine)
 {
     const auto sut = manifold_of(mesh_of(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
@@ -120,15 +110,6 @@ TEST(Manifold, cuts_round_a_flipped_face)
     EXPECT_EQ(sut.cut_edges, 3U);
     EXPECT_EQ(border_edges(sut.mesh.faces), 6U);
     EXPECT_EQ(sut.mesh.positions.size(), 7U);
-}
-
-TEST(Manifold, keeps_one_of_duplicate_faces)
-{
-    auto mesh = tetrahedron();
-    mesh.faces.push_back({mesh.faces[0][1], mesh.faces[0][2], mesh.faces[0][0]});
-    const auto sut = manifold_of(mesh);
-    EXPECT_EQ(sut.duplicate_faces, 1U);
-    EXPECT_EQ(sut.mesh.faces, tetrahedron().faces);
 }
 
 TEST(Manifold, parts_a_two_sided_sheet_into_two_whole_sheets)
@@ -282,5 +263,4 @@ RC_GTEST_PROP(Manifold, does_not_touch_manifold_meshes, ())
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -10,7 +10,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -232,5 +231,4 @@ TEST(PrepareMesh, fits_models_whose_squares_would_under_or_overflow)
 }
 
 } // namespace
-
 } // namespace tactus::test

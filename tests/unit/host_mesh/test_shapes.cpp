@@ -11,7 +11,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -285,5 +284,4 @@ TEST(PortableSine, agrees_with_the_library)
 }
 
 } // namespace
-
 } // namespace tactus::test

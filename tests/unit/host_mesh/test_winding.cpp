@@ -12,7 +12,6 @@
 /// every surface, by solid angles.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -68,21 +67,6 @@ TriangleMesh bounded()
         mesh.faces.push_back({i, next + 8, i + 8});
     }
     return mesh;
-}
-
-TriangleMesh joined(std::initializer_list<TriangleMesh> parts)
-{
-    TriangleMesh all;
-    for (const TriangleMesh& part : parts)
-    {
-        const auto first = static_cast<std::uint32_t>(all.positions.size());
-        all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
-        for (const Face& f : part.faces)
-        {
-            all.faces.push_back({first + f[0], first + f[1], first + f[2]});
-        }
-    }
-    return all;
 }
 
 TriangleMesh turned(TriangleMesh mesh)
@@ -322,5 +306,4 @@ TEST(TurnClosedPieces, sorts_out_bubbles_in_bubbles)
 }
 
 } // namespace
-
 } // namespace tactus::test

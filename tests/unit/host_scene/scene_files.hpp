@@ -11,7 +11,6 @@
 #include <cstring>
 #include <initializer_list>
 #include <string>
-#include <vector>
 
 namespace tactus::test
 {
@@ -62,9 +61,8 @@ inline std::string glb(std::string json, std::string binary)
 }
 
 /// Scene file with a.bin, in a separate folder.
-class SceneFiles
+struct SceneFiles
 {
-public:
     explicit SceneFiles(std::string binary = tetrahedron_bytes())
     {
         folder_.write("a.bin", binary);

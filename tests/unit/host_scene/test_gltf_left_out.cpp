@@ -2,14 +2,12 @@
 // Copyright the Tactus authors.
 #include "tests/unit/host_scene/scene_files.hpp"
 
-#include <algorithm>
 #include <fstream>
 
 /// Useless parts are skipped by name, and the rest of the scene is read.
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -245,5 +243,4 @@ TEST(GltfLeftOut, are_no_files_whose_names_a_program_wrote_as_they_are)
 }
 
 } // namespace
-
 } // namespace tactus::test

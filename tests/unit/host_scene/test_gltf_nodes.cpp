@@ -5,13 +5,10 @@
 
 #include <Eigen/Geometry>
 
-#include <cmath>
-
 /// Nodes that are objects, with their names and poses.
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -263,5 +260,4 @@ TEST(GltfNodes, in_a_chain_as_long_as_the_bound_are_no_matter)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -11,7 +11,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -296,5 +295,4 @@ TEST(GltfRefusals, a_gltf_cut_anywhere_is_refused)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -24,7 +24,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -153,9 +152,8 @@ struct Sample
     }
 };
 
-class SecondOpinion : public testing::TestWithParam<Sample>
+struct SecondOpinion : testing::TestWithParam<Sample>
 {
-protected:
     void SetUp() override
     {
         if (!std::filesystem::exists(sample(GetParam().file)))
@@ -264,5 +262,4 @@ std::string name_of_sample(const testing::TestParamInfo<Sample>& value)
 INSTANTIATE_TEST_SUITE_P(Samples, SecondOpinion, testing::ValuesIn(samples()), name_of_sample);
 
 } // namespace
-
 } // namespace tactus::test

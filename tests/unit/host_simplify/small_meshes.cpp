@@ -15,7 +15,6 @@
 
 namespace tactus::test
 {
-
 namespace
 {
 

@@ -10,13 +10,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <random>
 #include <set>
 
 namespace tactus::test
 {
-
 namespace
 {
 

@@ -36,9 +36,8 @@ using test::TinyModel;
 constexpr ContentKey kIndexPage{ContentKind::index_page, 0};
 constexpr ContentKey kFirstChunk{ContentKind::chunk, 0};
 
-class ModelFetcherTest : public ::testing::Test
+struct ModelFetcherTest : ::testing::Test
 {
-protected:
     void SetUp() override
     {
         test::isolate_domains();

@@ -26,9 +26,8 @@ namespace
 
 using tactus::test::Connection;
 
-class WebServerTest : public ::testing::Test
+struct WebServerTest : ::testing::Test
 {
-protected:
     void SetUp() override
     {
         const std::vector<std::string> files{tactus::test::small_model(0).path.string()};

@@ -20,9 +20,8 @@ namespace tactus::test
 {
 
 /// Connection to a server of this machine, byte by byte.
-class Connection
+struct Connection
 {
-public:
     explicit Connection(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0))
     {
         sockaddr_in address = {};

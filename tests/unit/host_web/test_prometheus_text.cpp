@@ -92,11 +92,6 @@ TEST(MetricsServer, does_not_share_a_port)
     EXPECT_NE(second.error().text.find("--metrics"), std::string::npos) << second.error().text;
 }
 
-} // namespace
-
-namespace
-{
-
 TEST(MetricsServer, answers_one_that_asks_while_28_keep_silent)
 {
     const auto sut = MetricsServer::start(0, "--metrics");
@@ -117,5 +112,4 @@ TEST(MetricsServer, answers_one_that_asks_while_28_keep_silent)
 }
 
 } // namespace
-
 } // namespace tactus::web

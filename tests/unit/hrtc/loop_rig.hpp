@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -42,9 +41,8 @@ inline constexpr double kRounding_n = 1e-9;
 inline constexpr double kBackStep_n = 2.0 * 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 /// Hand that descends on a place of the surface along its normal, presses and stays.
-class PressingOperator final : public OperatorMotion
+struct PressingOperator final : OperatorMotion
 {
-public:
     PressingOperator(const Vec3& place_m, const Vec3& outward, double height_m, double press_m)
         : place_m_(place_m), outward_(outward), height_m_(height_m), press_m_(press_m)
     {
@@ -67,9 +65,8 @@ private:
 };
 
 /// Device whose readings a test can change; keeps the written forces.
-class TamperedDevice final : public HapticDevice
+struct TamperedDevice final : HapticDevice
 {
-public:
     using Tamper = std::function<void(std::uint64_t frame, DeviceSample& sample)>;
 
     TamperedDevice(std::unique_ptr<SimulatedDevice> device, std::vector<DeviceFault> faults,
@@ -114,21 +111,21 @@ private:
     std::uint64_t reads_{0};
 };
 
-class LoopRig;
+struct LoopRig;
 
 struct LoopRigOptions
 {
     TamperedDevice::Tamper tamper = [](std::uint64_t, DeviceSample&) {};
     /// Called while a frame's device is read.
-    std::function<void(LoopRig& rig, std::uint64_t frame)> meanwhile;
-    std::vector<DeviceFault> faults;
-    std::vector<LateWake> late_wakes;
-    std::optional<Duration> watchdog;
+    std::function<void(LoopRig& rig, std::uint64_t frame)> meanwhile{};
+    std::vector<DeviceFault> faults{};
+    std::vector<LateWake> late_wakes{};
+    std::optional<Duration> watchdog{};
     bool static_model{false};
     bool has_mailbox{false};                ///< True if objects have the poses of mailbox().
     double object_speed_m_per_s{kInfinity}; ///< Object speed limit.
     /// Object speed limit of the last force stage; empty: that of the mailbox.
-    std::optional<double> change_speed_m_per_s;
+    std::optional<double> change_speed_m_per_s{};
     DeviceLimits device{kDeskClass};
     double press_m{kPress_m}; ///< Depth; negative: the hand rests above the surface.
     std::uint64_t frames{2'000};
@@ -138,15 +135,14 @@ struct LoopRigOptions
     double angular_stiffness_nm_per_rad{0.0}; ///< See ToolSpec.
     const Clock* clock{nullptr}; ///< Another clock than the virtual one, with its own timer.
     PeriodicTimer* timer{nullptr};
-    std::optional<std::size_t> front_slots; ///< Slots of the viewer copy.
-    bool is_coarse{false};                  ///< True if only the base mesh is loaded.
+    std::optional<std::size_t> front_slots{}; ///< Slots of the viewer copy.
+    bool is_coarse{false};                    ///< True if only the base mesh is loaded.
     /// Distance of an object of a second model beyond the hand's start.
-    std::optional<double> neighbour_m;
+    std::optional<double> neighbour_m{};
 };
 
-class LoopRig
+struct LoopRig
 {
-public:
     explicit LoopRig(LoopRigOptions options)
         : options_(std::move(options))
         , model_(tactus::test::small_model(0))

@@ -41,7 +41,6 @@
 /// Complete sessions, each in its own process, in which an assertion fails on one of the threads.
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -135,9 +134,8 @@ const Kernels& failing_kernels()
 }
 
 /// Device of the child process: triggers the bug, and reports brakes and releases.
-class FailingDevice final : public WrappedDevice
+struct FailingDevice final : WrappedDevice
 {
-public:
     FailingDevice(std::unique_ptr<HapticDevice> device, Plan plan, int events)
         : WrappedDevice(std::move(device))
         , plan_(std::move(plan))
@@ -309,9 +307,8 @@ void run_session(const Plan& plan, const std::string& model, int events)
     }
 }
 
-class Pipe
+struct Pipe
 {
-public:
     Pipe() { TACTUS_ASSERT(pipe(ends_.data()) == 0); }
     Pipe(const Pipe&) = delete;
     Pipe& operator=(const Pipe&) = delete;
@@ -528,9 +525,7 @@ struct Thread
     Bug bug;
 };
 
-class AssertionOnOrdinaryThread : public testing::TestWithParam<Thread>
-{
-};
+using AssertionOnOrdinaryThread = testing::TestWithParam<Thread>;
 
 INSTANTIATE_TEST_SUITE_P(Each, AssertionOnOrdinaryThread,
                          testing::Values(Thread{"main", Bug::main},
@@ -565,5 +560,4 @@ TEST(AssertionBrakeDeathTest, without_a_loop_a_failed_assertion_is_printed_and_e
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

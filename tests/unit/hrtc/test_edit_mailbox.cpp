@@ -114,13 +114,6 @@ TEST(EditMailbox, tells_once_the_model_whose_edit_a_frame_refused)
     EXPECT_EQ(sut.take_refused_model(), ModelId{6});
 }
 
-TEST(EditMailbox, holds_the_largest_edit)
-{
-    EditMailbox sut;
-    ASSERT_TRUE(try_put(sut, kMaxEditFaces));
-    expect_is(sut.edits()[0], kMaxEditFaces);
-}
-
 TEST(EditMailbox, passes_all_edits_in_order_between_two_threads)
 {
     constexpr std::uint32_t kAll = 3'000;

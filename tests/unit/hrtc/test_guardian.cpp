@@ -14,14 +14,12 @@
 
 namespace tactus::hrtc
 {
-
 namespace
 {
 
 /// Guard that writes its letter to a pipe.
-class Told final : public DeviceGuard
+struct Told final : DeviceGuard
 {
-public:
     Told(int pipe, char letter) : pipe_(pipe), letter_(letter) {}
 
     [[nodiscard]] bool brake() noexcept override { return ::write(pipe_, &letter_, 1) == 1; }
@@ -31,9 +29,8 @@ private:
     char letter_;
 };
 
-class GuardianTest : public testing::Test
+struct GuardianTest : testing::Test
 {
-protected:
     void SetUp() override { ASSERT_EQ(::pipe(pipe_.data()), 0); }
     void TearDown() override { ::close(pipe_[0]); }
 
@@ -163,5 +160,4 @@ TEST_F(GuardianTest, is_refused_when_a_guard_refuses_and_none_where_there_is_no_
 }
 
 } // namespace
-
 } // namespace tactus::hrtc

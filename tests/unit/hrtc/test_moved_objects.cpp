@@ -15,7 +15,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -24,9 +23,8 @@ constexpr double kFadeStep_n = 8.0 * kPeriod_s / kFadeTime_s;
 
 /// Object whose pose is sent before each frame in which `shift_m` gives its displacement in x; the
 /// hand descends on it in -x.
-class MovedObject
+struct MovedObject
 {
-public:
     using Shift = std::function<std::optional<double>(std::uint64_t frame)>;
 
     explicit MovedObject(Shift shift, double speed_m_per_s = kInfinity)
@@ -50,19 +48,18 @@ public:
 private:
     LoopRigOptions options(double speed_m_per_s)
     {
-        LoopRigOptions options;
-        options.object_speed_m_per_s = speed_m_per_s;
-        options.has_mailbox = true;
-        options.tamper = [this](std::uint64_t frame, DeviceSample&)
-        {
-            if (const auto shift_m = shift_(frame))
-            {
-                ObjectPose pose = rig_.placed();
-                pose.translation_m.x() += *shift_m;
-                rig_.mailbox().put(0, pose, rig_.clock().now());
-            }
-        };
-        return options;
+        return {.tamper =
+                    [this](std::uint64_t frame, DeviceSample&)
+                {
+                    if (const auto shift_m = shift_(frame))
+                    {
+                        ObjectPose pose = rig_.placed();
+                        pose.translation_m.x() += *shift_m;
+                        rig_.mailbox().put(0, pose, rig_.clock().now());
+                    }
+                },
+                .has_mailbox = true,
+                .object_speed_m_per_s = speed_m_per_s};
     }
 
     Shift shift_;
@@ -281,18 +278,17 @@ TEST(MovedObject, that_leaps_over_a_hand_is_felt_step_by_step_whatever_is_believ
         {
             for (const double off_m : {0.0002, 0.001, 0.004})
             {
-                LoopRigOptions options;
-                options.device = device;
-                options.press_m = -off_m - 0.01 * tactus::test::small_model(0).diagonal_m;
-                options.has_mailbox = true;
-                options.change_speed_m_per_s = 0.5;
-                options.meanwhile = [leap_m](LoopRig& rig, std::uint64_t frame)
-                {
-                    ObjectPose pose = rig.placed();
-                    pose.translation_m.x() += frame < kSettled ? 0.0 : leap_m;
-                    rig.mailbox().put(0, pose, rig.clock().now());
-                };
-                LoopRig rig(options);
+                LoopRig rig({.meanwhile =
+                                 [leap_m](LoopRig& running, std::uint64_t frame)
+                             {
+                                 ObjectPose pose = running.placed();
+                                 pose.translation_m.x() += frame < kSettled ? 0.0 : leap_m;
+                                 running.mailbox().put(0, pose, running.clock().now());
+                             },
+                             .has_mailbox = true,
+                             .change_speed_m_per_s = 0.5,
+                             .device = device,
+                             .press_m = -off_m - 0.01 * tactus::test::small_model(0).diagonal_m});
                 rig.run();
                 double growth = 0.0;
                 double felt_n = 0.0;
@@ -329,5 +325,4 @@ TEST(MovedObject, of_an_honest_server_is_felt_as_if_all_were_believed)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -16,7 +16,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -299,5 +298,4 @@ TEST(ReportPage, is_what_a_name_in_html_asks_for)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -37,9 +37,8 @@ constexpr Duration kAgeLimit = milliseconds(100);
 /// A model server with objects, a controller with the same two models, and the keeper between them,
 /// in turns, each test in its own DDS domain. The frame's side is a mailbox that
 /// the test reads.
-class SceneKeeperRig : public ::testing::Test
+struct SceneKeeperRig : ::testing::Test
 {
-protected:
     static constexpr std::uint32_t kServerDomain = 1;
     static constexpr std::uint32_t kOtherServerDomain = 2;
     static constexpr std::uint32_t kClientDomain = 3;
@@ -199,9 +198,7 @@ private:
     MonotonicTime now_{1'000'000'000};
 };
 
-class FollowedScene : public SceneKeeperRig
-{
-};
+using FollowedScene = SceneKeeperRig;
 
 TEST_F(FollowedScene, comes_moves_and_goes_through_the_door)
 {
@@ -360,9 +357,7 @@ TEST_F(FollowedScene, passes_over_objects_of_models_that_are_not_here)
     EXPECT_EQ(changes[SceneChangeKind::object_comes], 1);
 }
 
-class FollowedModel : public SceneKeeperRig
-{
-};
+using FollowedModel = SceneKeeperRig;
 
 TEST_F(FollowedModel, goes_where_the_server_s_object_with_the_least_number_is)
 {

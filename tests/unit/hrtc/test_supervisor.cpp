@@ -15,7 +15,6 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -26,16 +25,15 @@ constexpr Duration kLate = microseconds(50);
 constexpr double kStepBack_n = 8.0 * kPeriod_s / kRiseTime_s + kOwnStep_n;
 
 /// Force on the hand while the loop hung in a reading, in steps of 10 us.
-struct Felt
+struct FeltForce
 {
     Duration after; ///< Time since the last beat.
     double force_n{0.0};
 };
 
 /// The loop hangs for a while; the supervisor, if any, checks on its own schedule.
-class HangingLoop
+struct HangingLoop
 {
-public:
     HangingLoop(std::optional<Duration> own_watchdog, bool is_supervised, Duration hang = kHang)
         : hang_(hang)
         , rig_(options(own_watchdog, is_supervised))
@@ -46,12 +44,12 @@ public:
 
     [[nodiscard]] LoopRig& rig() { return rig_; }
     [[nodiscard]] Supervisor& supervisor() { return supervisor_; }
-    [[nodiscard]] const std::vector<Felt>& felt() const { return felt_; }
+    [[nodiscard]] const std::vector<FeltForce>& felt() const { return felt_; }
     /// Time from the last beat to the last force.
     [[nodiscard]] Duration held() const
     {
         Duration last{};
-        for (const Felt& felt : felt_)
+        for (const FeltForce& felt : felt_)
         {
             last = felt.force_n > 0.0 ? felt.after : last;
         }
@@ -95,7 +93,7 @@ private:
     Duration hang_;
     LoopRig rig_;
     Supervisor supervisor_;
-    std::vector<Felt> felt_;
+    std::vector<FeltForce> felt_;
 };
 
 TEST(Supervisor, fades_a_held_force_from_three_periods_after_the_last_beat_on)
@@ -106,7 +104,7 @@ TEST(Supervisor, fades_a_held_force_from_three_periods_after_the_last_beat_on)
     const Duration begin = kPeriod * 3;
     const double step_n = first_n * to_seconds(microseconds(10)) / to_seconds(kBrakeFade);
     double last_n = first_n;
-    for (const Felt& felt : sut.felt())
+    for (const FeltForce& felt : sut.felt())
     {
         EXPECT_LE(last_n - felt.force_n, step_n + 1e-9) << felt.after.ns; // No jump.
         EXPECT_LE(felt.force_n, last_n);
@@ -348,5 +346,4 @@ TEST(Supervisor, brakes_a_device_whose_reading_hangs_and_lets_the_loop_come_back
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -6,11 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include <string>
-#include <vector>
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -191,5 +189,4 @@ TEST(Verdict, names_the_limit_that_held_the_tool_back_and_what_helps)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -25,7 +25,6 @@
 /// The scripted machine wakes it late, stalls it and hangs in a reading.
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
@@ -34,9 +33,8 @@ constexpr std::uint64_t kHangSpacing = 7'919;
 constexpr Duration kHang = milliseconds(8); ///< Long enough for the supervisor.
 
 /// FNV-1a over the input bytes, so that a run is one number.
-class Digest
+struct Digest
 {
-public:
     void add(std::span<const std::byte> bytes)
     {
         for (const std::byte byte : bytes)
@@ -90,9 +88,8 @@ std::vector<LateWake> late_wakes(std::uint32_t seed)
 }
 
 /// Device whose reading takes time, in which the other threads' work is also done.
-class BusyDevice final : public WrappedDevice
+struct BusyDevice final : WrappedDevice
 {
-public:
     BusyDevice(std::unique_ptr<HapticDevice> device, std::function<void(std::uint64_t)> meanwhile)
         : WrappedDevice(std::move(device)), meanwhile_(std::move(meanwhile))
     {
@@ -129,9 +126,8 @@ tactus::test::RigOptions small_pools_and_a_bad_link()
     return options;
 }
 
-class VirtualRun
+struct VirtualRun
 {
-public:
     explicit VirtualRun(std::uint32_t seed)
         : frames_(model(), small_pools_and_a_bad_link())
         , late_wakes_(late_wakes(seed))
@@ -353,5 +349,4 @@ TEST(VirtualRun, minutes_of_the_whole_controller_are_the_same_each_time)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

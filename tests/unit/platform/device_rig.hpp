@@ -10,6 +10,7 @@
 #include "platform/devices/simulated/replay_device.hpp"
 #include "platform/devices/simulated/simulated_device.hpp"
 
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,18 +19,36 @@ namespace tactus::test
 {
 
 /// Hand at the origin.
-class OperatorAtRest final : public OperatorMotion
+struct OperatorAtRest final : OperatorMotion
 {
-public:
     [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
     [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return Vec3::Zero(); }
 };
 
+/// Hand whose place is a law of the frame; it begins at the origin.
+struct OperatorByLaw final : OperatorMotion
+{
+    explicit OperatorByLaw(std::function<Vec3(double frame)> place_m) : law_m(std::move(place_m)) {}
+    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
+    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
+    {
+        return law_m(static_cast<double>(sense.frame));
+    }
+
+    std::function<Vec3(double frame)> law_m;
+};
+
+/// Hand that moves at constant speed along x, by `step_m` each period.
+inline std::unique_ptr<OperatorMotion> operator_along_x(double step_m)
+{
+    return std::make_unique<OperatorByLaw>([=](double frame)
+                                           { return Vec3(step_m * frame, 0.0, 0.0); });
+}
+
 /// Device under test, with a hand that holds it loosely at one place, and controlled time: nothing
 /// happens between two calls of next().
-class DeviceRig
+struct DeviceRig
 {
-public:
     virtual ~DeviceRig() = default;
     [[nodiscard]] virtual HapticDevice& device() noexcept = 0;
     /// Advances one period under the last written force, then reads once.
@@ -46,9 +65,8 @@ protected:
 };
 
 /// Simulated device of any class; its wrapper must keep its promises too.
-class SimulatedRig final : public DeviceRig
+struct SimulatedRig final : DeviceRig
 {
-public:
     explicit SimulatedRig(const DeviceLimits& limits = kDeskClass)
     {
         SimulatedDeviceOptions options;
@@ -66,9 +84,8 @@ private:
 };
 
 /// Rig with a recording of a hand at rest.
-class ReplayRig final : public DeviceRig
+struct ReplayRig final : DeviceRig
 {
-public:
     [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
     [[nodiscard]] DeviceSample next() override { return device_->read(); }
     [[nodiscard]] bool gives_way() const override { return false; }

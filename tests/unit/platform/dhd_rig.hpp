@@ -10,7 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <dlfcn.h>
 #include <thread>
 
@@ -18,9 +17,8 @@ namespace tactus::test
 {
 
 /// Stand-in library that DhdDevice also finds: one library of one path is loaded once.
-class LoadedStandIn
+struct LoadedStandIn
 {
-public:
     LoadedStandIn() : handle_(dlopen(TACTUS_STAND_IN_DHD, RTLD_NOW | RTLD_LOCAL))
     {
         EXPECT_NE(handle_, nullptr);
@@ -37,10 +35,19 @@ private:
     StandInDhd* stand_in_{nullptr};
 };
 
-/// DhdDevice on the stand-in, in lock step.
-class DhdRig final : public DeviceRig
+/// Waits until two turns of the device's thread have begun, with a whole one between.
+inline void await_turn(const StandInDhdDevice& hand)
 {
-public:
+    const std::uint64_t now = hand.reads;
+    while (hand.reads < now + 2)
+    {
+        std::this_thread::yield();
+    }
+}
+
+/// DhdDevice on the stand-in, in lock step.
+struct DhdRig final : DeviceRig
+{
     DhdRig()
     {
         DhdDeviceOptions options;
@@ -59,22 +66,13 @@ public:
     [[nodiscard]] HapticDevice& device() noexcept override { return *device_; }
     [[nodiscard]] DeviceSample next() override
     {
-        await_turn();
+        await_turn(hand());
         hand().step();
-        await_turn();
+        await_turn(hand());
         return device_->read();
     }
     [[nodiscard]] bool turns() const override { return false; }
     [[nodiscard]] StandInDhdDevice& hand() { return stand_in_->devices.at(index_); }
-    /// Waits for a whole turn, which lies between two readings from now on.
-    void await_turn()
-    {
-        const std::uint64_t now = hand().reads;
-        while (hand().reads < now + 2)
-        {
-            std::this_thread::yield();
-        }
-    }
 
 private:
     PosixClock clock_;

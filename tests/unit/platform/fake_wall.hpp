@@ -5,9 +5,7 @@
 #include "rt_core/math/vec3.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <vector>
 
 /// Stand-in for the controller's force: analytic shapes and a god-object, to test device and hand
 /// before and apart from all code for meshes.
@@ -38,9 +36,8 @@ inline Shape join(Shape a, Shape b)
 }
 
 /// Sphere on a spring that follows the device, but never into the shape.
-class FakeWall
+struct FakeWall
 {
-public:
     FakeWall(Shape shape, double stiffness_n_per_m, double tool_radius_m, const Vec3& start)
         : shape_(std::move(shape))
         , stiffness_(stiffness_n_per_m)

@@ -48,9 +48,8 @@ int on(char id, const Work& work)
 }
 
 /// Device that outlives the program; no effect without a log.
-class Hardware
+struct Hardware
 {
-public:
     Hardware() : log_(std::getenv(tactus::test::kDhdLogVariable)) {}
 
     [[nodiscard]] bool is_there() const { return log_ != nullptr; }

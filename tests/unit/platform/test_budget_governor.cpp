@@ -11,7 +11,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -34,9 +33,8 @@ enum class Demand
     sliding ///< Little work, and all in one frame of ten.
 };
 
-class Simulation
+struct Simulation
 {
-public:
     Simulation(Duration frame_budget, const Machine& start, Demand wanted)
         : machine(start), demand(wanted), sut(frame_budget, kLeast, kMost)
     {
@@ -252,5 +250,4 @@ RC_GTEST_PROP(BudgetGovernor, never_leaves_its_limits_and_gives_the_same_for_the
 }
 
 } // namespace
-
 } // namespace tactus

@@ -12,7 +12,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -117,5 +116,4 @@ TEST(DeviceFrame, refuses_places_and_scales_out_of_range)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -13,16 +13,14 @@
 
 namespace tactus
 {
-
 namespace
 {
 
 using test::LoadedStandIn;
 using test::StandInDhdDevice;
 
-class DhdDeviceTest : public testing::Test
+struct DhdDeviceTest : testing::Test
 {
-protected:
     DhdDeviceTest()
     {
         options.library = TACTUS_STAND_IN_DHD;
@@ -80,15 +78,7 @@ protected:
         return {hand().force_n, hand().torque_nm, hand().grip_n, hand().brakes,
                 hand().forces_enabled};
     }
-    /// Waits until two turns have begun, with a whole one between.
-    void await_turn()
-    {
-        const std::uint64_t now = hand().reads;
-        while (hand().reads < now + 2)
-        {
-            std::this_thread::yield();
-        }
-    }
+    void await_turn() { test::await_turn(hand()); }
 
     PosixClock clock;
     LoadedStandIn stand_in;
@@ -313,5 +303,4 @@ TEST_F(DhdDeviceTest, leaves_the_device_without_a_force_and_closed)
 }
 
 } // namespace
-
 } // namespace tactus

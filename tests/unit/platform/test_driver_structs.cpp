@@ -70,9 +70,8 @@ tactus_sample sampled()
 }
 
 /// Driver that began at second 1, and the controller's side.
-class DriverStructs : public ::testing::Test
+struct DriverStructs : ::testing::Test
 {
-protected:
     DriverStructs()
     {
         driver.describe = described();
@@ -171,9 +170,8 @@ void sum(const void* bytes, std::size_t size, std::uint8_t tag[16])
     }
 }
 
-class SumAuthenticator final : public Authenticator
+struct SumAuthenticator final : Authenticator
 {
-public:
     [[nodiscard]] Tag tag_of(std::span<const std::byte> bytes) const noexcept override
     {
         std::uint8_t tag[16];

@@ -12,7 +12,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -54,5 +53,4 @@ TEST(FloatControl, reports_and_mends_another_rounding)
 #endif
 
 } // namespace
-
 } // namespace tactus

@@ -16,7 +16,6 @@
 /// everything else unchanged.
 namespace tactus
 {
-
 namespace
 {
 
@@ -116,5 +115,4 @@ TEST(GenericExtras, give_pools_in_ordinary_pages)
 }
 
 } // namespace
-
 } // namespace tactus

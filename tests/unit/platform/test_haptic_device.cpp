@@ -17,7 +17,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -59,9 +58,8 @@ std::unique_ptr<DeviceRig> make_dhd()
 }
 
 /// Promises of every device, with a hand that holds it loosely at one place.
-class HapticDeviceConformance : public testing::TestWithParam<std::unique_ptr<DeviceRig> (*)()>
+struct HapticDeviceConformance : testing::TestWithParam<std::unique_ptr<DeviceRig> (*)()>
 {
-protected:
     /// Displacement from the first reading after `frames` under a steady force.
     double drift_m(const std::array<double, 3>& force_n, int frames)
     {
@@ -283,5 +281,4 @@ TEST_P(HapticDeviceConformance, makes_no_system_call)
 }
 
 } // namespace
-
 } // namespace tactus

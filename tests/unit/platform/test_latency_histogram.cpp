@@ -13,7 +13,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -192,5 +191,4 @@ RC_GTEST_PROP(LatencyHistogram, agrees_with_sorted_data_to_three_digits, ())
 }
 
 } // namespace
-
 } // namespace tactus

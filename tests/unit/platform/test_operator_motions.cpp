@@ -10,14 +10,12 @@
 
 #include <algorithm>
 #include <numbers>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -421,5 +419,4 @@ TEST(OperatorMotions, tremor_is_the_script_with_swings_of_8_to_12_hz_by_its_seed
 }
 
 } // namespace
-
 } // namespace tactus

@@ -7,11 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <ctime>
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -28,9 +26,8 @@ void count_signal(int /*number*/)
 
 /// Timer that interrupts this process, whose only thread is the test's, by SIGALRM each
 /// millisecond: a quarter of the period.
-class Interruptions
+struct Interruptions
 {
-public:
     Interruptions()
     {
         struct sigaction action
@@ -99,5 +96,4 @@ TEST(PosixPeriodicTimer, gives_the_processor_up_but_for_the_margin)
 }
 
 } // namespace
-
 } // namespace tactus

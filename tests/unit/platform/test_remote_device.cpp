@@ -15,7 +15,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -32,9 +31,8 @@ DeviceInfo some_device()
 }
 
 /// Both halves on one thread, in virtual time.
-class TwoHalves : public RemoteDevice
+struct TwoHalves : RemoteDevice
 {
-public:
     explicit TwoHalves(const Clock& clock) : RemoteDevice(some_device(), {}, {}, clock) {}
 
     using RemoteDevice::command;
@@ -42,9 +40,8 @@ public:
     using RemoteDevice::publish;
 };
 
-class RemoteDeviceTest : public testing::Test
+struct RemoteDeviceTest : testing::Test
 {
-protected:
     void arrive(double x_m, bool is_new = false, bool valid = true)
     {
         DeviceReading reading;
@@ -53,6 +50,14 @@ protected:
         reading.arrival = clock.now();
         reading.valid = valid;
         sut.publish(reading, is_new);
+    }
+
+    /// Attaches a device, and makes 1 N along x.
+    void attach_and_write()
+    {
+        arrive(0.0, true);
+        static_cast<void>(sut.read());
+        sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
     }
 
     SimulatedClock clock{MonotonicTime{1'000'000'000}};
@@ -135,9 +140,7 @@ TEST_F(RemoteDeviceTest, ends_the_force_of_a_haptic_thread_that_hangs)
 
 TEST_F(RemoteDeviceTest, never_sends_a_force_to_another_attachment_than_it_was_written_for)
 {
-    arrive(0.0, true);
-    static_cast<void>(sut.read());
-    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
+    attach_and_write();
     arrive(0.0, true); // Another device, before the haptic thread has seen it.
     EXPECT_EQ(sut.command().state, DeviceState::idle);
     sut.write({{1.0, 0.0, 0.0}, {}, 0.0}); // A command for the previous device.
@@ -151,9 +154,7 @@ TEST_F(RemoteDeviceTest, never_sends_a_force_to_another_attachment_than_it_was_w
 
 TEST_F(RemoteDeviceTest, sends_the_brake_until_its_release_and_then_nothing_from_before)
 {
-    arrive(0.0, true);
-    static_cast<void>(sut.read());
-    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
+    attach_and_write();
     EXPECT_EQ(sut.command().state, DeviceState::force);
     sut.brake();
     EXPECT_EQ(sut.command().state, DeviceState::brake);
@@ -168,9 +169,7 @@ TEST_F(RemoteDeviceTest, sends_the_brake_until_its_release_and_then_nothing_from
 
 TEST_F(RemoteDeviceTest, fades_softly_whatever_the_hold_and_goes_on_with_the_next_write)
 {
-    arrive(0.0, true);
-    static_cast<void>(sut.read());
-    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
+    attach_and_write();
     clock.advance(milliseconds(10));
     sut.brake_softly();
     for (int ms = 0; ms < 50; ++ms)
@@ -255,9 +254,7 @@ TEST_F(RemoteDeviceTest, brings_no_force_back_from_before_a_release_with_threads
 
 TEST_F(RemoteDeviceTest, tells_each_write_from_the_one_before)
 {
-    arrive(0.0, true);
-    static_cast<void>(sut.read());
-    sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
+    attach_and_write();
     const MonotonicTime first = sut.command().written;
     clock.advance(milliseconds(1));
     sut.write({{1.0, 0.0, 0.0}, {}, 0.0});
@@ -302,5 +299,4 @@ TEST(InfoFault, finds_each_value_that_is_out_of_range)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -23,7 +23,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -110,6 +109,16 @@ int exit_status_without_privilege(rlim_t rtprio, rlim_t memlock, const Check& ch
     int status = 0;
     EXPECT_EQ(waitpid(child, &status, 0), child);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 255;
+}
+
+/// Skips if this user can't become another.
+void expect_done(int status)
+{
+    if (status == 77)
+    {
+        GTEST_SKIP() << "needs to start as root to try the refusals of an ordinary user";
+    }
+    EXPECT_EQ(status, 0);
 }
 
 /// True if a sanitizer replaces mlockall, which then never refuses and locks nothing.
@@ -339,11 +348,7 @@ TEST(RtThread, says_what_is_missing_for_fifo_to_an_ordinary_user)
                        ? 0
                        : 2;
         });
-    if (status == 77)
-    {
-        GTEST_SKIP() << "needs to start as root to try the refusals of an ordinary user";
-    }
-    EXPECT_EQ(status, 0);
+    expect_done(status);
 }
 
 TEST(RtThread, says_what_is_missing_for_locked_memory)
@@ -366,11 +371,7 @@ TEST(RtThread, says_what_is_missing_for_locked_memory)
                            ? 0
                            : 1;
             });
-        if (status == 77)
-        {
-            GTEST_SKIP() << "needs to start as root to try the refusals of an ordinary user";
-        }
-        EXPECT_EQ(status, 0) << "limit " << limit;
+        expect_done(status);
     }
 }
 
@@ -401,13 +402,8 @@ TEST(RtThread, runs_without_privilege_when_allowed_and_lists_both_refusals)
                        ? 0
                        : 2;
         });
-    if (status == 77)
-    {
-        GTEST_SKIP() << "needs to start as root to try the refusals of an ordinary user";
-    }
-    EXPECT_EQ(status, 0);
+    expect_done(status);
 }
 
 } // namespace
-
 } // namespace tactus

@@ -14,7 +14,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -42,8 +41,7 @@ bool is_whole(const ObjectPose& pose)
 
 TEST(SceneMailbox, tells_of_what_moved_and_of_nothing_else)
 {
-    const std::vector<ObjectPose> placed{pose_of(1.0), pose_of(2.0)};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_of(1.0), pose_of(2.0)}, kLimit);
     sut.put(1, pose_of(5.0), kStart);
     const auto changes = sut.refresh(kStart);
     ASSERT_EQ(changes.size(), 1U);
@@ -59,8 +57,7 @@ TEST(SceneMailbox, tells_of_what_moved_and_of_nothing_else)
 
 TEST(SceneMailbox, counts_the_age_from_when_the_server_was_heard_on_its_own_clock)
 {
-    const std::vector<ObjectPose> placed{pose_of(1.0)};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_of(1.0)}, kLimit);
     ObjectPose pose = pose_of(2.0);
     pose.stamp_ns = 1; // Any clock of the server.
     pose.arrival_ns = 77;
@@ -81,8 +78,7 @@ TEST(SceneMailbox, counts_the_age_from_when_the_server_was_heard_on_its_own_cloc
 
 TEST(SceneMailbox, tells_the_frame_of_a_silent_server_before_the_limit_and_of_one_that_is_back)
 {
-    const std::vector<ObjectPose> placed{pose_of(1.0)};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_of(1.0)}, kLimit);
     sut.put(0, pose_of(2.0), kStart);
     ASSERT_EQ(sut.refresh(kStart).size(), 1U);
     for (int ms = 20; ms <= 200; ms += 20) // The object rests, and its server is heard: no changes.
@@ -105,8 +101,7 @@ TEST(SceneMailbox, tells_the_frame_of_a_silent_server_before_the_limit_and_of_on
 
 TEST(SceneMailbox, takes_what_came_after_the_frame_began_as_new)
 {
-    const std::vector<ObjectPose> placed{pose_of(1.0)};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_of(1.0)}, kLimit);
     sut.put(0, pose_of(2.0), kStart + microseconds(5));
     EXPECT_EQ(age_ns(sut.refresh(kStart)[0].pose, kStart.ns), 0);
     EXPECT_EQ(sut.uses()[0].age_max.ns, 0);
@@ -126,8 +121,7 @@ ObjectPose pose_at(double x_m, Duration stamp)
 /// motion, and no step exceeds the server's poses.
 TEST(SceneMailbox, lets_an_object_glide_from_pose_to_pose_over_the_time_between_them)
 {
-    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_at(0.0, {})}, kLimit);
     sut.put(0, pose_at(0.0, milliseconds(5)), kStart);
     static_cast<void>(sut.refresh(kStart));
     double last_m = 0.0;
@@ -165,8 +159,7 @@ TEST(SceneMailbox, lets_an_object_glide_from_pose_to_pose_over_the_time_between_
 TEST(SceneMailbox, glides_evenly_though_poses_come_early_or_late)
 {
     constexpr double kSpeed_m_per_ms = 1e-4;
-    const std::vector<ObjectPose> placed{pose_at(0.0, Duration{1})};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_at(0.0, Duration{1})}, kLimit);
     double at_m = 0.0;
     double step_max_m = 0.0;
     double behind_max_m = 0.0;
@@ -204,8 +197,7 @@ TEST(SceneMailbox, glides_evenly_though_poses_come_early_or_late)
 
 TEST(SceneMailbox, ends_a_glide_at_the_pose_and_goes_no_farther)
 {
-    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_at(0.0, {})}, kLimit);
     sut.put(0, pose_at(0.0, milliseconds(1)), kStart);
     static_cast<void>(sut.refresh(kStart));
     const MonotonicTime later = kStart + milliseconds(40);
@@ -221,8 +213,7 @@ TEST(SceneMailbox, ends_a_glide_at_the_pose_and_goes_no_farther)
 /// Each frame has a new pose: nothing is left to blend or to delay.
 TEST(SceneMailbox, keeps_up_with_poses_that_come_as_fast_as_frames)
 {
-    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_at(0.0, {})}, kLimit);
     for (int ms = 1; ms < 50; ++ms)
     {
         sut.put(0, pose_at(1e-4 * ms, milliseconds(ms)), kStart + milliseconds(ms));
@@ -255,8 +246,7 @@ TEST(SceneMailbox, takes_a_far_pose_after_a_rest_at_once_and_glides_to_a_near_on
 
 TEST(SceneMailbox, keeps_the_newest_of_a_flood_and_counts_frames_that_moved)
 {
-    const std::vector<ObjectPose> placed{pose_of(1.0)};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_of(1.0)}, kLimit);
     for (int i = 2; i <= 1'000; ++i)
     {
         sut.put(0, pose_of(i), kStart);
@@ -435,8 +425,7 @@ TEST(SceneMailbox, takes_poses_of_any_time_that_the_clock_of_their_server_shows)
 {
     constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min();
     constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-    const std::vector<ObjectPose> placed{pose_at(0.0, {})};
-    SceneMailbox sut(placed, kLimit);
+    SceneMailbox sut(std::vector{pose_at(0.0, {})}, kLimit);
     int ms = 0;
     for (const std::int64_t first : {kLeast, kLeast + 1, std::int64_t{-1}, std::int64_t{0}, kMost})
     {
@@ -655,5 +644,4 @@ TEST(SceneMailbox, takes_no_more_comings_than_may_wait_and_gives_a_frame_what_it
 }
 
 } // namespace
-
 } // namespace tactus

@@ -16,7 +16,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -151,9 +150,7 @@ Recording play(const Model& model, double seconds, std::int64_t rate_hz = 1'000,
     return run;
 }
 
-class ScriptedOperatorOnModel : public testing::TestWithParam<Model>
-{
-};
+using ScriptedOperatorOnModel = testing::TestWithParam<Model>;
 
 INSTANTIATE_TEST_SUITE_P(Models, ScriptedOperatorOnModel,
                          testing::Values(sphere_model(), strip_model(), l_model()),
@@ -237,5 +234,4 @@ TEST(ScriptedOperator, refuses_scenes_that_cannot_be_played)
 }
 
 } // namespace
-
 } // namespace tactus

@@ -2,44 +2,24 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "platform/devices/simulated/simulated_periodic_timer.hpp"
+#include "tests/unit/platform/device_rig.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace tactus
 {
-
 namespace
 {
 
 /// Hand that rests at the origin, jumps to `target` in the first frame and stays.
-class OperatorThatJumps final : public OperatorMotion
+std::unique_ptr<OperatorMotion> operator_that_jumps(const Vec3& target = Vec3::Zero())
 {
-public:
-    explicit OperatorThatJumps(const Vec3& target) : target_(target) {}
-    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const OperatorSense&) noexcept override { return target_; }
-
-private:
-    Vec3 target_;
-};
-
-/// Hand that moves at constant speed along x.
-class OperatorThatPulls final : public OperatorMotion
-{
-public:
-    explicit OperatorThatPulls(double step_m) : step_m_(step_m) {}
-    [[nodiscard]] Vec3 start_world_m() const noexcept override { return Vec3::Zero(); }
-    [[nodiscard]] Vec3 next_world_m(const OperatorSense& sense) noexcept override
-    {
-        return Vec3::UnitX() * (step_m_ * static_cast<double>(sense.frame));
-    }
-
-private:
-    double step_m_;
-};
+    return std::make_unique<test::OperatorByLaw>([=](double) { return target; });
+}
 
 std::unique_ptr<SimulatedDevice> make(const SimulatedDeviceOptions& options,
                                       std::unique_ptr<OperatorMotion> hand)
@@ -49,8 +29,7 @@ std::unique_ptr<SimulatedDevice> make(const SimulatedDeviceOptions& options,
 
 std::string refusal(const SimulatedDeviceOptions& options)
 {
-    const auto made =
-        SimulatedDevice::create(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    const auto made = SimulatedDevice::create(options, operator_that_jumps());
     return made ? std::string() : made.error().text;
 }
 
@@ -60,7 +39,7 @@ constexpr double kArmAndGrip_m_per_n = 1.0 / 200.0 + 1.0 / 2'000.0;
 TEST(SimulatedDevice, settles_where_springs_and_force_balance)
 {
     SimulatedDeviceOptions options;
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3(0.01, 0.02, -0.03)));
+    auto sut = make(options, operator_that_jumps(Vec3(0.01, 0.02, -0.03)));
     DeviceSample sample;
     for (int i = 0; i < 3'000; ++i)
     {
@@ -76,7 +55,7 @@ TEST(SimulatedDevice, a_load_hangs_on_the_hand_until_it_is_carried)
 {
     SimulatedDeviceOptions options;
     options.load = {0.1, Vec3(0.02, 0.0, 0.0), Vec3(0.0, 0.0, -1.0)};
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     const auto settle = [&](const Wrench& wrench)
     {
         DeviceSample sample;
@@ -101,7 +80,7 @@ TEST(SimulatedDevice, a_load_hangs_on_the_hand_until_it_is_carried)
 TEST(SimulatedDevice, trails_a_moving_hand_by_its_own_drag)
 {
     SimulatedDeviceOptions options;
-    auto sut = make(options, std::make_unique<OperatorThatPulls>(1e-4)); // 0.1 m/s.
+    auto sut = make(options, test::operator_along_x(1e-4)); // 0.1 m/s.
     DeviceSample sample;
     for (int i = 0; i <= 3'000; ++i)
     {
@@ -116,7 +95,7 @@ TEST(SimulatedDevice, its_brake_drops_a_force_that_is_still_under_way)
 {
     SimulatedDeviceOptions options;
     options.device.delay_s = 5e-3;
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     for (int i = 0; i < 3; ++i)
     {
         static_cast<void>(sut->read());
@@ -133,8 +112,8 @@ TEST(SimulatedDevice, repeats_bit_for_bit_and_takes_its_time_from_the_frame)
 {
     SimulatedDeviceOptions options;
     options.rate_hz = 3'000; // The period is not a whole number of nanoseconds.
-    auto one = make(options, std::make_unique<OperatorThatPulls>(1e-5));
-    auto two = make(options, std::make_unique<OperatorThatPulls>(1e-5));
+    auto one = make(options, test::operator_along_x(1e-5));
+    auto two = make(options, test::operator_along_x(1e-5));
     for (std::int64_t i = 0; i <= 3'000; ++i)
     {
         const DeviceSample a = one->read();
@@ -210,7 +189,7 @@ double drift_in_a_pause_m(std::optional<Duration> watchdog, Duration pause,
     options.hand.grip_stiffness_n_per_m = 0.0; // The hand does not hold it.
     options.hand.grip_damping_n_s_per_m = 0.0;
     options.device.damping_n_s_per_m = 7.0; // The device comes to rest soon.
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     DeviceSample before;
     for (int i = 0; i < 500; ++i)
     {
@@ -253,7 +232,7 @@ TEST(SimulatedDevice, tells_that_its_watchdog_has_ended_the_force_until_the_next
     SimulatedDeviceOptions options;
     options.clock = &clock;
     options.watchdog = milliseconds(5);
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     static_cast<void>(sut->read());
     sut->write({{1.0, 0.0, 0.0}, {}, 0.0});
     clock.advance(milliseconds(5) - nanoseconds(1));
@@ -273,7 +252,7 @@ TEST(SimulatedDevice, with_a_clock_counts_true_periods_and_catches_up_on_one_sec
     SimulatedDeviceOptions options;
     options.rate_hz = 3'000;
     options.clock = &clock;
-    auto sut = make(options, std::make_unique<OperatorThatJumps>(Vec3::Zero()));
+    auto sut = make(options, operator_that_jumps());
     EXPECT_EQ(sut->read().time.ns, 0);
     EXPECT_EQ(sut->read().time.ns, 333'333); // Every reading is one period, however early.
     clock.advance(milliseconds(10));
@@ -297,6 +276,107 @@ TEST(SimulatedDevice, refuses_a_watchdog_without_a_clock_or_without_a_time)
     EXPECT_NE(refusal(options).find("speed"), std::string::npos);
 }
 
-} // namespace
+constexpr Duration kTick = milliseconds(1);
+constexpr Duration kTickMargin = microseconds(100);
 
+Cycle next(PeriodicTimer& timer)
+{
+    timer.sleep_until_margin();
+    return timer.spin_until_deadline();
+}
+
+TEST(SimulatedPeriodicTimer, starts_every_frame_on_the_nanosecond_while_nothing_is_late)
+{
+    SimulatedClock clock(MonotonicTime{77});
+    SimulatedPeriodicTimer sut(clock);
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
+    for (std::int64_t i = 1; i <= 1'000; ++i)
+    {
+        const Cycle cycle = next(sut);
+        EXPECT_EQ(cycle.deadline.ns, 77 + i * 1'000'000);
+        EXPECT_EQ(clock.now(), cycle.deadline);
+        EXPECT_EQ(cycle.wake_lateness, Duration{});
+        EXPECT_EQ(cycle.periods, 1U);
+    }
+    EXPECT_EQ(sut.counts().missed_periods, 0U);
+}
+
+TEST(SimulatedPeriodicTimer, runs_a_frame_at_once_that_is_less_than_a_period_late)
+{
+    const std::array script{LateWake{1, microseconds(400)}};
+    SimulatedClock clock;
+    SimulatedPeriodicTimer sut(clock, script);
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
+    static_cast<void>(next(sut));
+    const Cycle late = next(sut);
+    EXPECT_EQ(late.wake_lateness, microseconds(400));
+    EXPECT_EQ(late.start_lateness, microseconds(300));
+    EXPECT_EQ(late.periods, 1U);
+    EXPECT_EQ(next(sut).start_lateness, Duration{}); // The grid is unchanged.
+}
+
+TEST(SimulatedPeriodicTimer, moves_to_the_next_grid_point_after_a_late_wake_of_many_periods)
+{
+    const std::array script{LateWake{1, microseconds(53'700)}};
+    SimulatedClock clock;
+    SimulatedPeriodicTimer sut(clock, script);
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
+    static_cast<void>(next(sut));
+    const Cycle late = next(sut); // Due at 2 ms, woken at 55.6 ms.
+    EXPECT_EQ(late.deadline.ns, 56'000'000);
+    EXPECT_EQ(late.periods, 55U);
+    EXPECT_EQ(late.wake_lateness, microseconds(53'700));
+    EXPECT_EQ(late.start_lateness, Duration{});
+    EXPECT_EQ(sut.counts().missed_periods, 54U);
+    EXPECT_EQ(sut.counts().episodes, 1U);
+    EXPECT_EQ(next(sut).periods, 1U);
+}
+
+TEST(SimulatedPeriodicTimer, sleeps_again_after_a_stall_and_never_without_time)
+{
+    SimulatedClock clock;
+    // The second cycle's sleep ends late, and so does the one to the new grid point.
+    const std::array script{LateWake{1, microseconds(5'300)}, LateWake{2, microseconds(7'300)}};
+    SimulatedPeriodicTimer sut(clock, script);
+    int sleeps = 0;
+    sut.set_meanwhile([&sleeps] { ++sleeps; });
+    const auto sleeps_of_next = [&]
+    {
+        const int before = sleeps;
+        static_cast<void>(next(sut));
+        return sleeps - before;
+    };
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
+    EXPECT_EQ(sleeps_of_next(), 1);
+    EXPECT_EQ(sleeps_of_next(), 3);
+    EXPECT_EQ(sleeps_of_next(), 1);
+    clock.advance(microseconds(1'500)); // Past the margin: no time to sleep.
+    EXPECT_EQ(sleeps_of_next(), 0);
+}
+
+TEST(SimulatedPeriodicTimer, treats_a_frame_of_exactly_two_periods_as_one_lost)
+{
+    SimulatedClock clock;
+    SimulatedPeriodicTimer sut(clock);
+    ASSERT_TRUE(sut.start(kTick, kTickMargin));
+    static_cast<void>(next(sut)); // Cycle at 1 ms.
+    clock.advance(milliseconds(2));
+    const Cycle cycle = next(sut);
+    EXPECT_EQ(cycle.deadline.ns, 4'000'000);
+    EXPECT_EQ(cycle.periods, 3U);
+}
+
+TEST(SimulatedClock, moves_only_when_told_to)
+{
+    SimulatedClock sut(MonotonicTime{10});
+    EXPECT_EQ(sut.now().ns, 10);
+    sut.advance_to(MonotonicTime{5});
+    EXPECT_EQ(sut.now().ns, 10);
+    const WallTime wall = sut.wall_now();
+    sut.advance(nanoseconds(7));
+    EXPECT_EQ(sut.now().ns, 17);
+    EXPECT_EQ(sut.wall_now().ns - wall.ns, 7);
+}
+
+} // namespace
 } // namespace tactus

@@ -11,7 +11,6 @@
 
 namespace tactus
 {
-
 namespace
 {
 
@@ -73,5 +72,4 @@ TEST(ThreadUsage, is_of_the_calling_thread_alone)
 }
 
 } // namespace
-
 } // namespace tactus

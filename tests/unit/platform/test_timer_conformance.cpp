@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "tests/unit/platform/timer_machines.hpp"
+#include "platform/devices/simulated/simulated_periodic_timer.hpp"
+#include "platform/machine/posix/posix_clock.hpp"
+#include "platform/machine/posix/posix_periodic_timer.hpp"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <random>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -14,15 +18,48 @@
 /// around it are checked.
 namespace tactus::test
 {
-
 namespace
 {
 
+/// Backends of the clock and the timer, with a way to let time pass.
+struct Machine
+{
+    virtual ~Machine() = default;
+    [[nodiscard]] virtual PeriodicTimer& timer() = 0;
+    [[nodiscard]] virtual const Clock& clock() = 0;
+    /// Lets at least this time pass: a frame's work, or a stall.
+    virtual void pass(Duration duration) = 0;
+};
+
+struct PosixMachine final : Machine
+{
+    PeriodicTimer& timer() override { return timer_; }
+    const Clock& clock() override { return clock_; }
+    void pass(Duration duration) override
+    {
+        std::this_thread::sleep_for(std::chrono::nanoseconds(duration.ns));
+    }
+
+private:
+    PosixClock clock_;
+    PosixPeriodicTimer timer_;
+};
+
+struct SimulatedMachine final : Machine
+{
+    PeriodicTimer& timer() override { return timer_; }
+    const Clock& clock() override { return clock_; }
+    void pass(Duration duration) override { clock_.advance(duration); }
+
+private:
+    SimulatedClock clock_{MonotonicTime{12'345}};
+    SimulatedPeriodicTimer timer_{clock_};
+};
+
 using Machines = testing::Types<PosixMachine, SimulatedMachine>;
 
-class NameOfMachine
+struct NameOfMachine
 {
-public:
     template <typename T>
     static std::string GetName(int /*number*/)
     {
@@ -31,9 +68,8 @@ public:
 };
 
 template <typename T>
-class ClockConformance : public testing::Test
+struct ClockConformance : testing::Test
 {
-protected:
     T machine;
     const Clock& sut = machine.clock();
 };
@@ -77,9 +113,8 @@ struct WatchedCycle
 };
 
 template <typename T>
-class PeriodicTimerConformance : public testing::Test
+struct PeriodicTimerConformance : testing::Test
 {
-protected:
     static constexpr Duration kPeriod = milliseconds(2);
     static constexpr Duration kMargin = microseconds(200);
 
@@ -351,5 +386,4 @@ TYPED_TEST(PeriodicTimerConformance, works_when_the_sleep_is_left_out)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -14,7 +14,6 @@
 
 namespace tactus::udp
 {
-
 namespace
 {
 
@@ -286,5 +285,4 @@ TEST(UdpDatagram, has_a_text_for_each_refusal)
 }
 
 } // namespace
-
 } // namespace tactus::udp

@@ -11,7 +11,6 @@
 
 namespace tactus::udp
 {
-
 namespace
 {
 
@@ -19,9 +18,8 @@ constexpr Endpoint kHome{0x7F00'0001, 50'000};
 constexpr Endpoint kElsewhere{0x7F00'0001, 50'001};
 constexpr std::uint64_t kSecret = 0xABCD'EF01'2345'6789;
 
-class UdpSession : public testing::Test
+struct UdpSession : testing::Test
 {
-protected:
     using Result = std::variant<Described, Sampled, DatagramFault>;
 
     Result describe(std::uint64_t sequence, std::uint64_t instance = 9, Endpoint from = kHome)
@@ -219,9 +217,8 @@ TEST_F(UdpSession, believes_a_device_that_samples_for_a_while_and_alone)
 }
 
 /// Tag that the test can compute: the sum of the bytes, and a secret.
-class Sum final : public Authenticator
+struct Sum final : Authenticator
 {
-public:
     explicit Sum(std::uint8_t secret) : secret_(secret) {}
     [[nodiscard]] Tag tag_of(std::span<const std::byte> bytes) const noexcept override
     {
@@ -368,5 +365,4 @@ TEST_F(UdpSession, changes_nothing_for_rubbish)
 }
 
 } // namespace
-
 } // namespace tactus::udp

@@ -16,7 +16,6 @@
 
 namespace tactus::relay
 {
-
 namespace
 {
 
@@ -182,5 +181,4 @@ TEST(FrameContent, tells_payloads_of_udp_from_headers_also_in_fragments)
 }
 
 } // namespace
-
 } // namespace tactus::relay

@@ -23,9 +23,8 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr std::chrono::seconds kPatience{60};
 
 /// Log lines from any thread.
-class Lines
+struct Lines
 {
-public:
     Log log()
     {
         return [this](const std::string& line)

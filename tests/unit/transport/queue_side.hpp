@@ -11,13 +11,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstdlib>
 #include <map>
 #include <memory>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace tactus::test
 {
@@ -32,9 +29,8 @@ struct FreeDeleter
 
 /// Small model of a controller, and the haptic thread's side of the queues: its slots, checked at
 /// every hand-over against the content of the model's pages.
-class QueueSide
+struct QueueSide
 {
-public:
     QueueSide(const TinyModel& model, std::uint32_t pages, std::uint32_t index_pages,
               std::uint32_t requests)
         : model_(model)

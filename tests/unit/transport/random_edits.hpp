@@ -13,9 +13,8 @@ namespace tactus::test
 {
 
 /// Sequence of random edits of one model, each of which can follow the ones before it.
-class RandomEdits
+struct RandomEdits
 {
-public:
     RandomEdits(const ModelHeader& header, std::uint32_t room) : header_(header), room_(room) {}
 
     /// Most are small, every tenth is as large as the surface allows.

@@ -64,9 +64,8 @@ inline std::vector<std::byte> forged(std::span<const std::byte> piece, Forgery h
 
 /// Unauthenticated server that announces the model and sends any answers. Header and base mesh are
 /// true.
-class Stranger
+struct Stranger
 {
-public:
     /// Starts a server; `model` must outlive it.
     Stranger(std::uint32_t domain, const TinyModel& model, std::string name = "tiny",
              std::string scene = "")

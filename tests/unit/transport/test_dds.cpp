@@ -87,9 +87,8 @@ std::vector<std::string> devices_of_open_sockets()
 
 /// Server in its own thread and DDS domain, which communicates with the client's domain over
 /// loopback sockets, as between processes.
-class ServerThread
+struct ServerThread
 {
-public:
     ServerThread(std::uint32_t domain, std::vector<PublishedModel> models, Log log)
     {
         auto created = DdsServer::create(domain, std::move(models), std::move(log));
@@ -144,9 +143,8 @@ private:
 };
 
 /// Keeps and counts all received pieces.
-class Collector final : public PieceSink
+struct Collector final : PieceSink
 {
-public:
     void receive(ContentKey key, std::span<const std::byte> bytes) override
     {
         pieces[{key.kind, key.number}].assign(bytes.begin(), bytes.end());
@@ -156,9 +154,8 @@ public:
     std::size_t count{0};
 };
 
-class Dds : public ::testing::Test
+struct Dds : ::testing::Test
 {
-protected:
     static constexpr std::uint32_t kServerDomain = 1; // Within this process; see SetUp.
     static constexpr std::uint32_t kOtherServerDomain = 2;
     static constexpr std::uint32_t kClientDomain = 3;
@@ -330,9 +327,8 @@ TEST_F(Dds, a_server_that_goes_in_the_middle_of_a_header_is_completed_by_another
 }
 
 /// Counts the received parts of a base mesh.
-class PartCounter final : public PieceReceiver
+struct PartCounter final : PieceReceiver
 {
-public:
     explicit PartCounter(const ContentHash& model) : model_(model) {}
     [[nodiscard]] const ContentHash& model() const override { return model_; }
     void receive(std::uint64_t /*server_epoch*/, ContentKey key,
@@ -682,9 +678,8 @@ TEST_F(Dds, without_a_configuration_of_the_user_nothing_from_outside_the_machine
 }
 
 /// spm_publish, killed at the end.
-class Program
+struct Program
 {
-public:
     explicit Program(std::vector<std::string> arguments)
     {
         arguments.insert(arguments.begin(), TACTUS_SPM_PUBLISH);

@@ -39,9 +39,8 @@ using test::TemporaryFolder;
 constexpr std::uint32_t kEditRoom = 500;
 
 /// Controller that reads the edits of one model, and the surface that its frame would have.
-class Controller
+struct Controller
 {
-public:
     Controller(std::uint32_t domain, const test::TinyModel& model, std::uint32_t room = kEditRoom)
         : client_(std::move(DdsClient::create(domain, "controller", lines.log())).value())
         , header_(ModelHeader::parse(model.header).value())
@@ -85,9 +84,8 @@ public:
 };
 
 /// Server of one model that can be edited, and controllers, in turns, each in its own domain.
-class DdsEdits : public ::testing::Test
+struct DdsEdits : ::testing::Test
 {
-protected:
     void SetUp() override
     {
         test::isolate_domains();
@@ -196,9 +194,8 @@ TEST_F(DdsEdits, what_cannot_follow_is_refused_and_not_published)
 }
 
 /// Writes samples of edits in the name of any server.
-class Forger
+struct Forger
 {
-public:
     Forger(const Domain& domain, const DdsServer& of, const ModelHeader& header)
         : header_(header)
         , epoch_(of.epoch())

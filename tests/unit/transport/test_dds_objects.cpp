@@ -46,9 +46,8 @@ Pose some_pose(double x_m = 0.25)
 }
 
 /// Controller that follows given servers, and keeps the events.
-class Follower
+struct Follower
 {
-public:
     explicit Follower(std::uint32_t domain, const std::string& name = "follower")
         : client_(std::move(DdsClient::create(domain, name, lines.log())).value())
         , scene_(client_->domain(), client_->exchange(), lines.log())
@@ -88,9 +87,8 @@ private:
 };
 
 /// Server of one model and a controller that follows it, in turns, each in its own domain.
-class DdsObjects : public ::testing::Test
+struct DdsObjects : ::testing::Test
 {
-protected:
     static constexpr std::uint32_t kServerDomain = 1;
     static constexpr std::uint32_t kOtherServerDomain = 2;
     static constexpr std::uint32_t kClientDomain = 3;
@@ -298,9 +296,8 @@ TEST_F(DdsObjects, that_a_server_must_not_show_never_leave_it)
 }
 
 /// Samples of the server's own participant that its program did not send.
-class DdsObjectFaults : public DdsObjects
+struct DdsObjectFaults : DdsObjects
 {
-protected:
     void SetUp() override
     {
         DdsObjects::SetUp();
@@ -433,9 +430,8 @@ TEST_F(DdsObjectFaults, of_noise_never_pass_for_a_pose)
 }
 
 /// Messages of a server's participant about objects and models that its program does not allow.
-class DdsServerFaults : public DdsObjectFaults
+struct DdsServerFaults : DdsObjectFaults
 {
-protected:
     void SetUp() override
     {
         DdsObjectFaults::SetUp();

@@ -41,9 +41,8 @@ constexpr Size kLargest{kMaxTools,        kMaxShownModels, kMaxPairs,
                         kMaxShownObjects, kMaxModels,      kMaxStatePages};
 
 /// Different numbers, and flags that differ between records.
-class Distinct
+struct Distinct
 {
-public:
     template <typename... Fields>
     void fill(Fields&... fields)
     {
@@ -279,9 +278,8 @@ const std::vector<void (*)(S&)> kReportFaults{
     [](S& s) { std::strcpy(static_cast<char*>(s.sample.controller_name), "two words"); },
 };
 
-class DdsTelemetry : public ::testing::Test
+struct DdsTelemetry : ::testing::Test
 {
-protected:
     void SetUp() override
     {
         test::isolate_domains();

@@ -36,9 +36,8 @@ using test::Stranger;
 using test::TinyModel;
 
 /// Keeps the true chunks and rejects the others.
-class Verifier final : public PieceSink
+struct Verifier final : PieceSink
 {
-public:
     Verifier(const TinyModel& model, ChunkLink& link) : model_(model), link_(link) {}
     void receive(ContentKey key, std::span<const std::byte> bytes) override
     {
@@ -60,9 +59,8 @@ private:
     ChunkLink& link_;
 };
 
-class DdsServers : public ::testing::Test
+struct DdsServers : ::testing::Test
 {
-protected:
     void SetUp() override
     {
         test::isolate_domains();

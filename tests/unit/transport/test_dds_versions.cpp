@@ -41,18 +41,16 @@ using test::TinyModel;
 /// Wait for an event that must not occur.
 constexpr auto kMoment = 300ms;
 
-class Nobody final : public PieceSink
+struct Nobody final : PieceSink
 {
-public:
     void receive(ContentKey /*key*/, std::span<const std::byte> /*bytes*/) override { ++count; }
     std::size_t count{0};
 };
 
 /// Server, controller and stranger as three domains of this process on loopback; server and
 /// controller run in turn on one thread.
-class DdsVersions : public ::testing::Test
+struct DdsVersions : ::testing::Test
 {
-protected:
     static constexpr std::uint32_t kServerDomain = 1;
     static constexpr std::uint32_t kClientDomain = 2;
     static constexpr std::uint32_t kStrangerDomain = 3;

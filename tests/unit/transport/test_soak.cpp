@@ -36,7 +36,6 @@ extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -121,9 +120,8 @@ struct SoakFigures
 };
 
 /// Controller with its link, a hand, and its judges.
-class Controller
+struct Controller
 {
-public:
     Controller(const TestModel& model, const CenterOracle& oracle, std::uint64_t seed,
                SoakFigures& figures)
         : model_(model)
@@ -212,9 +210,8 @@ private:
 };
 
 /// One controller for the whole run, another one for a part of each cycle.
-class Soak
+struct Soak
 {
-public:
     Soak(const TestModel& model, const CenterOracle& oracle, std::uint64_t seed)
         : model_(model)
         , oracle_(oracle)
@@ -329,5 +326,4 @@ TEST(Soak, in_bad_weather_no_answer_is_wrong_and_nothing_grows)
 }
 
 } // namespace
-
 } // namespace tactus::test

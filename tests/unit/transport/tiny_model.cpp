@@ -11,18 +11,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <numeric>
 #include <random>
-#include <stdexcept>
-#include <string>
 
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -47,9 +41,8 @@ ContentHash short_hash(std::span<const std::byte> bytes)
 }
 
 /// Synthetic mesh that grows split by split, as a simplification run backwards.
-class GrowingMesh
+struct GrowingMesh
 {
-public:
     GrowingMesh(TinyModel& model, std::mt19937& random) : model_(model), random_(random)
     {
         for (std::uint32_t vertex = 0; vertex < model.counts.base_vertices; ++vertex)

@@ -11,14 +11,12 @@
 
 namespace tactus::hrtc::test
 {
-
 namespace
 {
 
 /// One model, one object and room for two.
-class ProgramSceneTest : public ::testing::Test
+struct ProgramSceneTest : ::testing::Test
 {
-protected:
     ProgramSceneTest()
     {
         models_.push_back(
@@ -104,5 +102,4 @@ TEST_F(ProgramSceneTest, an_object_of_a_program_never_grows_old)
 }
 
 } // namespace
-
 } // namespace tactus::hrtc::test

@@ -25,7 +25,6 @@
 /// Worlds in a loop of one's own.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -130,11 +129,7 @@ TEST(World, a_missed_period_counts_and_a_stall_fades_the_force)
     EXPECT_TRUE(has_cause(late.value().causes, ForceOff::stall));
     EXPECT_NE(hand.why(late.value()).find("frames were missed"), std::string::npos);
     EXPECT_GT(world.counts().missed, 0U);
-    HandState back;
-    for (int i = 0; i < 2'000; ++i)
-    {
-        back = hand.step(above(kRadius_m - kPress_m)).value();
-    }
+    HandState back = hold(hand, above(kRadius_m - kPress_m), 2'000);
     EXPECT_EQ(back.withheld, Withheld::nothing);
     EXPECT_NEAR(back.force_n[2], pressed_n, 1e-4);
 }
@@ -148,18 +143,11 @@ TEST(World, objects_move_change_come_and_go_by_their_handles)
     EXPECT_NEAR(press(hand, kRadius_m - 0.01 - kPress_m).force_n[2], 0.25, 1e-3);
 
     ASSERT_TRUE(part.feel({.stiffness_n_per_m = 100.0}));
-    HandState state;
-    for (int i = 0; i < 300; ++i)
-    {
-        state = hand.step(above(kRadius_m - 0.01 - kPress_m)).value();
-    }
+    HandState state = hold(hand, above(kRadius_m - 0.01 - kPress_m), 300);
     EXPECT_NEAR(state.force_n[2], 0.05, 1e-3);
 
     ASSERT_TRUE(part.move({.translation_m = {0.0, 0.0, -0.03}}));
-    for (int i = 0; i < 300; ++i)
-    {
-        state = hand.step(above(kRadius_m - 0.01 - kPress_m)).value();
-    }
+    state = hold(hand, above(kRadius_m - 0.01 - kPress_m), 300);
     EXPECT_FALSE(state.in_contact);
 
     // An object whose surface comes into the tool has no force until the tool is clear.
@@ -188,11 +176,7 @@ TEST(World, a_tool_that_begins_inside_is_told_so)
     World world;
     static_cast<void>(world.add(cube()));
     const Hand hand = world.add(sphere(kRadius_m));
-    HandState state;
-    for (int i = 0; i < 50; ++i)
-    {
-        state = hand.step({{0.0, 0.0, 0.0}}).value();
-    }
+    HandState state = hold(hand, {{0.0, 0.0, 0.0}}, 50);
     EXPECT_TRUE(state.began_inside);
     EXPECT_NE(hand.why(state).find("began inside a closed object"), std::string::npos);
 }
@@ -454,5 +438,4 @@ TEST(World, shows_viewers_its_hands_and_objects_with_their_names)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -27,7 +27,6 @@
 /// Worlds whose models change while they are touched.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -115,11 +114,7 @@ TEST(WorldEdits, a_tool_loses_its_support_and_finds_the_floor_of_the_hole)
     const auto carved = carve_hole(part);
     ASSERT_TRUE(carved) << carved.error().text;
     EXPECT_NEAR(carved.value(), kHole_m3, 1e-3 * kHole_m3);
-    HandState state;
-    for (int i = 0; i < 200; ++i)
-    {
-        state = hand.step(above(kRadius_m - kPress_m)).value();
-    }
+    HandState state = hold(hand, above(kRadius_m - kPress_m), 200);
     EXPECT_FALSE(state.in_contact);
     EXPECT_EQ(state.force_n[2], 0.0);
 
@@ -372,5 +367,4 @@ TEST(WorldEdits, edits_that_no_frame_takes_are_refused_in_the_end)
 }
 
 } // namespace
-
 } // namespace tactus::test

@@ -12,7 +12,6 @@
 /// Worlds with the guarded loop. Waits are for events; no test compares times.
 namespace tactus::test
 {
-
 namespace
 {
 
@@ -200,5 +199,4 @@ TEST(WorldLoop, a_loop_of_a_given_duration_ends_by_itself)
 }
 
 } // namespace
-
 } // namespace tactus::test

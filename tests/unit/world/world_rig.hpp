@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <string>
 
 /// A World with a cube of 100 mm round the origin, as a mesh in memory.
@@ -57,6 +56,17 @@ inline HandState press(const Hand& hand, double height_m, int frames = 600)
         const auto felt = hand.step(above(0.02 + share * (height_m - 0.02)));
         EXPECT_TRUE(felt) << felt.error().text;
         state = felt ? felt.value() : state;
+    }
+    return state;
+}
+
+/// Holds the hand at a place for some frames.
+inline HandState hold(const Hand& hand, const HandPose& place, int frames)
+{
+    HandState state;
+    for (int i = 0; i < frames; ++i)
+    {
+        state = hand.step(place).value();
     }
     return state;
 }
