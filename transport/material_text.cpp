@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #include "transport/material_text.hpp"
 
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/base/suggestions.hpp"
 #include "transport/material_ranges.hpp"
 
 #include <fmt/format.h>

@@ -2,13 +2,12 @@
 // Copyright the Tactus authors.
 #include "host_tools/build/build_model.hpp"
 
-#include "host_tools/build/memory_need.hpp"
 #include "host_tools/encode/write_spm.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/simplify/handle_cuts.hpp"
 #include "host_tools/simplify/sampled_distance.hpp"
 #include "host_tools/simplify/simplify.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

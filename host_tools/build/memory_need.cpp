@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/build/memory_need.hpp"
+#include "host_tools/build/build_model.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 /// with the same border, so their largest vertical gap is at the removed vertex or where an edge
 /// before crosses one after.
 
-#include "host_tools/edit/merge_pieces.hpp"
+#include "host_tools/edit/surface_faces.hpp"
 
 #include <algorithm>
 #include <cmath>

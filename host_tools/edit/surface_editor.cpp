@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/edit/surface_editor.hpp"
 
-#include "host_tools/edit/merge_pieces.hpp"
+#include "host_tools/edit/surface_faces.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"

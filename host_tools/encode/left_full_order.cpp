@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/encode/left_full_order.hpp"
+#include "host_tools/encode/model_pieces.hpp"
 
 #include <algorithm>
 #include <array>

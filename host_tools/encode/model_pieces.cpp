@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/encode/model_pieces.hpp"
 
-#include "host_tools/encode/left_full_order.hpp"
 #include "host_tools/encode/piece_coding.hpp"
 #include "host_tools/encode/record_coder.hpp"
 #include "host_tools/simplify/parallel_blocks.hpp"

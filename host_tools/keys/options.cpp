@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/keys/options.hpp"
-
+#include "host_tools/keys/site.hpp"
 #include "platform/program/command_line.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/dds/key_folder.hpp"

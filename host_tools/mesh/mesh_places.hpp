@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "host_tools/mesh/quantised_mesh.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <Eigen/Geometry>
@@ -30,6 +31,13 @@ namespace tactus
         }
     }
     return box;
+}
+
+/// A mesh vertex in quanta; exact, since a double holds every 32-bit integer.
+[[nodiscard]] inline Vec3 grid_point(const QuantisedMesh& mesh, std::uint32_t vertex) noexcept
+{
+    const auto& p = mesh.positions[vertex];
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
 } // namespace tactus

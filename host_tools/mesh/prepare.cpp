@@ -3,7 +3,7 @@
 #include "host_tools/mesh/prepare.hpp"
 
 #include "host_tools/mesh/detail/prepare_steps.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,8 @@
 
 #include "host_tools/mesh/index_lists.hpp"
 #include "host_tools/mesh/mesh_places.hpp"
-#include "host_tools/scene/left_out.hpp"
+#include "host_tools/scene/scene_names.hpp"
 #include "host_tools/scene/shared_grids.hpp"
-#include "host_tools/scene/unique_names.hpp"
 #include "platform/program/progress.hpp"
 #include "transport/content_hash.hpp"
 

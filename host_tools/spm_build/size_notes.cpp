@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/spm_build/size_notes.hpp"
-
 #include "host_tools/mesh/mesh_places.hpp"
 #include "host_tools/mesh/prepare.hpp"
+#include "host_tools/spm_build/placing.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/spm_inspect/extraction.hpp"
-
 #include "host_tools/encode/zone.hpp"
 #include "host_tools/mesh/write_mesh.hpp"
+#include "host_tools/spm_inspect/options.hpp"
 #include "platform/program/command_line.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/base/number_form.hpp"

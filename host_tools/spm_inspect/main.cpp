@@ -7,7 +7,7 @@
 #include "platform/program/command_line.hpp"
 #include "platform/program/progress.hpp"
 #include "platform/program/run_program.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
 

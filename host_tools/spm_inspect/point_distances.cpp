@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_inspect/point_distances.hpp"
 
-#include "host_tools/mesh/detail/read_input.hpp"
+#include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
 #include "transport/store/static_model.hpp"
 

@@ -10,12 +10,11 @@
 #include "host_tools/spm_publish/watch.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
-#include "platform/program/stop_signals.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_server.hpp"
-#include "transport/dds/security.hpp"
+#include "transport/dds/key_folder.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "host_tools/spm_publish/serving_report.hpp"
 
 #include "platform/program/run_program.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

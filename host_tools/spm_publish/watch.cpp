@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_publish/watch.hpp"
 
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

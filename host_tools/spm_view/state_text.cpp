@@ -4,7 +4,6 @@
 
 #include "host_tools/spm_view/cut.hpp"
 #include "host_tools/spm_view/feed.hpp"
-#include "host_tools/spm_view/force_words.hpp"
 #include "host_tools/web/prometheus_text.hpp"
 #include "rt_core/records/work_counters.hpp"
 #include "transport/content_hash.hpp"

@@ -3,7 +3,7 @@
 
 #include "host_tools/tactus/programs.hpp"
 #include "platform/program/command_line.hpp"
-#include "platform/program/stop_signals.hpp"
+#include "platform/program/run_program.hpp"
 
 #include <fmt/format.h>
 

@@ -14,8 +14,8 @@
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/rotation.hpp"
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <fmt/format.h>
 

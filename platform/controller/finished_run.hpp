@@ -9,7 +9,7 @@
 #include "platform/machine/periodic_timer.hpp"
 #include "platform/machine/rt_thread.hpp"
 #include "platform/machine/time.hpp"
-#include "platform/scene/scene_news_counts.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "transport/dds/authority.hpp"
 #include "transport/dds/edit_reader.hpp"
 #include "transport/dds/refusals.hpp"

@@ -17,7 +17,7 @@
 #include "platform/machine/system_call_trap.hpp"
 #include "platform/scene/program_scene.hpp"
 #include "rt_core/scene/object_table.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/inside_test.hpp"
 
 #include <fmt/format.h>

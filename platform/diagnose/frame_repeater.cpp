@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/frame_repeater.hpp"
-
+#include "platform/diagnose/self_check.hpp"
 #include "platform/machine/thread_usage.hpp"
 #include "platform/recording/replay.hpp"
 

@@ -6,13 +6,11 @@
 #include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/devices/wrapped_device.hpp"
-#include "platform/diagnose/frame_repeater.hpp"
 #include "platform/machine/allocation_counter.hpp"
 #include "platform/machine/thread_usage.hpp"
-#include "platform/options/program_hooks.hpp"
+#include "platform/options/options.hpp"
 #include "platform/program/run_program.hpp"
-#include "platform/program/stop_signals.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

@@ -4,6 +4,7 @@
 
 #include "platform/loop/safety_log.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -21,10 +22,35 @@ public:
     /// Largest number of events kept in full; later ones are only counted.
     static constexpr std::size_t kEventsKept = 1'000;
 
-    void add(const SafetyEvent& event);
+    void add(const SafetyEvent& event)
+    {
+        // The supervisor's events are not counted: the loop notes their causes once it runs again.
+        if (!event.by_supervisor)
+        {
+            ForceOff& last = last_causes_[event.tool];
+            const std::uint32_t began =
+                static_cast<std::uint32_t>(event.causes) & ~static_cast<std::uint32_t>(last);
+            for (std::size_t bit = 0; bit < begun_.size(); ++bit)
+            {
+                begun_[bit] += (began >> bit) & 1U;
+            }
+            last = event.causes;
+        }
+        if (events_.size() < kEventsKept)
+        {
+            events_.push_back(event);
+            return;
+        }
+        ++left_out_;
+    }
     /// Sorts the events by time; call it after the last add(). `brakes`: brakes of the supervisor.
     /// `lost`: events dropped by the logs.
-    void finish(std::uint64_t brakes, std::uint64_t lost);
+    void finish(std::uint64_t brakes, std::uint64_t lost)
+    {
+        brakes_ = brakes;
+        left_out_ += lost;
+        std::ranges::stable_sort(events_, {}, &SafetyEvent::time);
+    }
 
     [[nodiscard]] const std::vector<SafetyEvent>& events() const noexcept { return events_; }
     /// Number of times that each cause began for a tool, in the order of ForceOff's bits.

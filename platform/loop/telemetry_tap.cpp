@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/loop/telemetry_tap.hpp"
 
-#include "platform/loop/touch_forces.hpp"
 #include "rt_core/base/assert.hpp"
 #include "transport/telemetry_from_frame.hpp"
 

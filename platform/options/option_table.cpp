@@ -3,7 +3,6 @@
 #include "platform/options/option_table.hpp"
 
 #include "platform/choices/option_ranges.hpp"
-#include "platform/options/tool_options.hpp"
 #include "platform/program/command_line.hpp"
 #include "rt_core/limits.hpp"
 

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/program/command_line.hpp"
 
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/base/read_file.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

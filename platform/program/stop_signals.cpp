@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/program/stop_signals.hpp"
+#include "platform/program/run_program.hpp"
 
 #include <atomic>
 #include <csignal>

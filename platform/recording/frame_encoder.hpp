@@ -4,7 +4,7 @@
 
 #include "platform/recording/change_coding.hpp"
 #include "platform/recording/fixed_writer.hpp"
-#include "platform/recording/output_hash.hpp"
+#include "platform/recording/recording_format.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"

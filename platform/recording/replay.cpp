@@ -6,7 +6,7 @@
 #include "platform/recording/recording.hpp"
 #include "platform/recording/replay_queues.hpp"
 #include "rt_core/frame/frame.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #include "platform/recording/setup_coding.hpp"
 
 #include "platform/recording/change_coding.hpp"
-#include "platform/recording/core_coding.hpp"
 #include "platform/recording/fixed_writer.hpp"
+#include "platform/recording/recording_format.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/printable.hpp"

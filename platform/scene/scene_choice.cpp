@@ -5,7 +5,6 @@
 #include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
 #include "platform/machine/clock.hpp"
-#include "platform/scene/object_pose.hpp"
 #include "platform/scene/scene_parts.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/program_log.hpp"

@@ -3,7 +3,7 @@
 #include "platform/scene/scene_keeper.hpp"
 
 #include "platform/scene/material_limits.hpp"
-#include "platform/scene/object_pose.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>

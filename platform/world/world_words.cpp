@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/world/world_words.hpp"
+#include "platform/world/world_values.hpp"
 
 #include <cctype>
 #include <cstddef>

@@ -11,7 +11,7 @@
 #include "tests/bench/peers/point_query.hpp"
 #include "tests/bench/static_model.hpp"
 #include "tests/bench/suites.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/edit_content.hpp"
 
 #include <fmt/format.h>
 

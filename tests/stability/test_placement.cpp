@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/choices/placement.hpp"
+#include "platform/choices/device_choice.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/base/files_near.hpp"
-
 #include "transport/base/printable.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <algorithm>
 #include <cstddef>

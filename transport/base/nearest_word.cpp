@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/base/nearest_word.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "transport/base/number_form.hpp"
 
-#include "transport/base/counted.hpp"
 #include "transport/base/printable.hpp"
 
 #include <algorithm>

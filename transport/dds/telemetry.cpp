@@ -3,9 +3,8 @@
 #include "transport/dds/telemetry.hpp"
 
 #include "transport/base/printable.hpp"
-#include "transport/dds/placement.hpp"
-#include "transport/dds/refinement_state.hpp"
 #include "transport/dds/take.hpp"
+#include "transport/dds/wire_values.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>

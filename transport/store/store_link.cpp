@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "transport/store/store_link.hpp"
 
-#include "transport/piece_parts.hpp"
+#include "transport/part_intake.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/devices/remote/info_fault.hpp"
-
+#include "platform/devices/remote/remote_values.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "transport/base/printable.hpp"
 

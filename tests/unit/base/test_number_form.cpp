@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/number_form.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/keys/options.hpp"
+#include "host_tools/keys/site.hpp"
 #include "host_tools/spm_build/options.hpp"
 #include "host_tools/spm_inspect/options.hpp"
 #include "host_tools/spm_publish/options.hpp"

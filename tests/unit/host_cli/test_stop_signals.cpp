@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/program/run_program.hpp"
-#include "platform/program/stop_signals.hpp"
 
 #include <gtest/gtest.h>
 

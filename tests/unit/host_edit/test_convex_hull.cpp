@@ -3,8 +3,7 @@
 
 /// Hulls against their definition, and triangles of loops against the loops' edges.
 
-#include "host_tools/edit/convex_hull.hpp"
-#include "host_tools/edit/loop_triangles.hpp"
+#include "host_tools/edit/exact_shapes.hpp"
 #include "tests/shared/random.hpp"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 /// A wall that grows column by column, as behind a tool, and is merged after each column. It is
 /// compared with the wall of all faces ever added.
 
-#include "host_tools/edit/merge_pieces.hpp"
+#include "host_tools/edit/surface_faces.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/unit/host_edit/edited_surface.hpp"
 

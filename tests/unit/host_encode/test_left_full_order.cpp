@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/encode/left_full_order.hpp"
+#include "host_tools/encode/model_pieces.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/scene/unique_names.hpp"
+#include "host_tools/scene/scene_names.hpp"
 #include "transport/model_name.hpp"
 
 #include <gtest/gtest.h>

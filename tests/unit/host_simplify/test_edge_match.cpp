@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 // Refusals of meshes by simplify(), and their wording.
-#include "host_tools/simplify/edge_match.hpp"
+#include "host_tools/simplify/collapse_mesh.hpp"
 #include "tests/unit/host_simplify/small_meshes.hpp"
 
 #include <gtest/gtest.h>

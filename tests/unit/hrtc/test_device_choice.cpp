@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/choices/device_choice.hpp"
-#include "platform/choices/tool_words.hpp"
+#include "platform/choices/tool_choice.hpp"
 #include "platform/devices/device_force.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/replay_device.hpp"

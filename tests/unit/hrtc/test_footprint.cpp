@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/report/footprint.hpp"
+#include "platform/report/report.hpp"
 #include "tests/shared/test_model.hpp"
 #include "transport/store/store_link.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/frame_repeater.hpp"
+#include "platform/diagnose/self_check.hpp"
 #include "tests/shared/altered_recording.hpp"
 #include "tests/shared/frame_rig.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/choices/placement.hpp"
-#include "platform/scene/object_pose.hpp"
+#include "platform/choices/device_choice.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "tests/shared/frame_rig.hpp"
 
 #include <Eigen/Geometry>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/loop/telemetry_tap.hpp"
-#include "platform/loop/touch_forces.hpp"
 #include "tests/unit/hrtc/loop_rig.hpp"
 
 #include <gtest/gtest.h>

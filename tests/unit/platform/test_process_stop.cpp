@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/machine/process_stop.hpp"
+#include "platform/machine/thread_usage.hpp"
 
 #include <gtest/gtest.h>
 

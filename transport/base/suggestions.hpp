@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,5 +17,10 @@ namespace tactus
 
 /// List of a folder's files that end in `ending`: "a.spm, b.spm and 3 more", or "no .spm".
 [[nodiscard]] std::string files_in(const std::filesystem::path& folder, std::string_view ending);
+
+/// Member of `words` with the least edit distance to `word` (Levenshtein: letters inserted, removed
+/// or replaced), to correct a typing error. Empty if all are too far.
+[[nodiscard]] std::string nearest_word(std::string_view word,
+                                       std::span<const std::string_view> words);
 
 } // namespace tactus

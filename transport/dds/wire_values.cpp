@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/dds/placement.hpp"
+#include "transport/dds/wire_values.hpp"
 
 #include <algorithm>
 #include <iterator>

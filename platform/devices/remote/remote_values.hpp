@@ -2,9 +2,11 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "platform/devices/haptic_device.hpp"
 #include "platform/machine/rt_thread.hpp"
 #include "platform/machine/time.hpp"
 
+#include <cstddef>
 #include <string>
 
 namespace tactus
@@ -30,5 +32,13 @@ struct RemoteTimes
 /// Returns the fault in one line; empty if both times are in [RemoteTimes::kMin,
 /// RemoteTimes::kMax].
 [[nodiscard]] std::string find_bad_time(const RemoteTimes& times);
+
+/// Most bytes of a device's name. The name must be printable ASCII, so that it may be shown
+/// unchanged.
+inline constexpr std::size_t kDeviceNameMax = 31;
+
+/// Returns one line that names a value out of range in a device's description; null if all are in
+/// range. Descriptions come from outside, and forces depend on them.
+[[nodiscard]] const char* find_fault(const DeviceInfo& info) noexcept;
 
 } // namespace tactus

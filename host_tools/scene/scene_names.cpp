@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/scene/unique_names.hpp"
+
+#include "host_tools/scene/scene_names.hpp"
 
 #include "rt_core/base/assert.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/model_name.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
@@ -50,6 +53,35 @@ std::vector<std::string> unique_names(std::span<const std::string> names)
         result.push_back(std::move(own));
     }
     return result;
+}
+
+namespace
+{
+
+/// Number of parts named in a line; more names would hide the reason.
+constexpr std::size_t kNamed = 3;
+
+} // namespace
+
+void LeftOut::add(const std::string& reason, const std::string& what)
+{
+    Things& things = by_reason_[reason];
+    if (++things.count <= kNamed)
+    {
+        things.named += (things.count == 1 ? "" : ", ") + what;
+    }
+}
+
+std::vector<std::string> LeftOut::notes() const
+{
+    std::vector<std::string> notes;
+    for (const auto& [reason, things] : by_reason_)
+    {
+        const std::string more =
+            things.count > kNamed ? fmt::format(" and {} more", things.count - kNamed) : "";
+        notes.push_back(fmt::format("{}{} left out: {}", things.named, more, reason));
+    }
+    return notes;
 }
 
 } // namespace tactus
