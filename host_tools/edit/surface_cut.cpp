@@ -19,7 +19,6 @@
 
 #include "host_tools/edit/surface_cut.hpp"
 
-#include "host_tools/edit/exact_shapes.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/orientation.hpp"
 

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/edit/surface_editor.hpp"
 
-#include "host_tools/edit/surface_faces.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
@@ -14,7 +13,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>

@@ -9,9 +9,7 @@
 #include "rt_core/spm/index_page.hpp"
 #include "rt_core/spm/ring_prediction.hpp"
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 

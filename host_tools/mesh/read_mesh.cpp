@@ -13,9 +13,6 @@
 #include <array>
 #include <cmath>
 #include <new>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
 
 namespace tactus

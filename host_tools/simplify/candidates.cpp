@@ -3,8 +3,6 @@
 #include "host_tools/simplify/candidates.hpp"
 
 #include "host_tools/mesh/mesh_places.hpp"
-#include "host_tools/simplify/collapse_mesh.hpp"
-#include "host_tools/simplify/simplify.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/math/vec3.hpp"
 

@@ -10,7 +10,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 // Any thread, except the haptic one: it allocates, starts threads and works on its arguments alone.

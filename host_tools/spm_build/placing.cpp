@@ -5,7 +5,6 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <cstddef>

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <iterator>
 #include <map>
-#include <utility>
 #include <vector>
 
 namespace tactus::view

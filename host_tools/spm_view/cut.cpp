@@ -7,11 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace tactus::view
 {

@@ -17,8 +17,6 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
-#include <span>
-#include <utility>
 #include <vector>
 
 namespace tactus::view

@@ -11,7 +11,6 @@
 #include <csignal>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>

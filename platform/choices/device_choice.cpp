@@ -7,7 +7,6 @@
 #include "platform/devices/dhd/dhd_device.hpp"
 #include "platform/devices/dhd/dhd_guard.hpp"
 #include "platform/devices/plugin/device_plugin.hpp"
-#include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/replay_device.hpp"
 #include "platform/devices/udp/udp_device.hpp"
 #include "platform/recording/recording.hpp"
@@ -24,7 +23,6 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 namespace tactus::hrtc

@@ -25,15 +25,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 namespace tactus::hrtc
 {

@@ -15,7 +15,6 @@
 #include "platform/machine/clock.hpp"
 #include "platform/machine/periodic_timer.hpp"
 #include "platform/machine/system_call_trap.hpp"
-#include "platform/machine/thread_usage.hpp"
 #include "platform/recording/frame_tap.hpp"
 #include "platform/recording/last_inputs.hpp"
 #include "rt_core/frame/frame.hpp"

@@ -3,7 +3,6 @@
 #include "platform/loop/run_statistics.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tactus::hrtc
 {

@@ -3,11 +3,8 @@
 #include "platform/loop/telemetry_tap.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/static_vector.hpp"
-#include "rt_core/limits.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace tactus::hrtc

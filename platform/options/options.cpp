@@ -24,7 +24,6 @@
 #include <memory>
 #include <span>
 #include <sstream>
-#include <string>
 #include <string_view>
 
 namespace tactus::hrtc

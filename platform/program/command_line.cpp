@@ -14,11 +14,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 namespace tactus
 {

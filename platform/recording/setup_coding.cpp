@@ -4,7 +4,6 @@
 
 #include "platform/recording/change_coding.hpp"
 #include "platform/recording/fixed_writer.hpp"
-#include "platform/recording/recording_format.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/printable.hpp"

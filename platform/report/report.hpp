@@ -15,7 +15,6 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>

@@ -9,7 +9,6 @@
 #include "rt_core/records/material.hpp"
 
 #include <compare>
-#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <mutex>

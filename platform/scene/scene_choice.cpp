@@ -16,12 +16,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <iterator>
-#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 namespace tactus::hrtc
 {

@@ -5,7 +5,6 @@
 
 #include "rt_core/math/rotation.hpp"
 
-#include <algorithm>
 #include <variant>
 
 namespace tactus::hrtc

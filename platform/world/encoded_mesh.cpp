@@ -14,7 +14,6 @@
 #include <exception>
 #include <system_error>
 #include <unistd.h>
-#include <utility>
 #include <vector>
 
 namespace tactus::hrtc

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/world/local_edits.hpp"
 
-#include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
 #include "platform/controller/controller.hpp"
 #include "platform/controller/cut_sender.hpp"

@@ -4,9 +4,7 @@
 
 #include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
-#include "platform/choices/tool_choice.hpp"
 #include "platform/loop/burr.hpp"
-#include "platform/scene/material_limits.hpp"
 #include "platform/scene/scene_parts.hpp"
 #include "rt_core/math/rotation.hpp"
 #include "transport/base/number_form.hpp"

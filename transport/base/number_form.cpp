@@ -10,8 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <optional>
-#include <string>
 
 namespace tactus
 {

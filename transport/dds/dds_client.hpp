@@ -12,7 +12,6 @@
 #include "transport/served_model.hpp"
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>

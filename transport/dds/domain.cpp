@@ -27,10 +27,7 @@
 #include <map>
 #include <mutex>
 #include <netinet/in.h>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <sys/socket.h>
 #include <system_error>
 #include <vector>

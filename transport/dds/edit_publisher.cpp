@@ -5,7 +5,6 @@
 #include "rt_core/base/assert.hpp"
 #include "transport/dds/take.hpp"
 #include "transport/dds/wire_values.hpp"
-#include "transport/edit_content.hpp"
 
 #include <dds/dds.h>
 #include <fmt/format.h>

@@ -11,11 +11,9 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "tactus.h"
 

@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <new>

@@ -5,7 +5,6 @@
 #include "transport/part_intake.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace tactus
 {

@@ -3,7 +3,6 @@
 #include "host_tools/scene/detail/gltf_nodes.hpp"
 
 #include "host_tools/scene/detail/gltf_accessor.hpp"
-#include "host_tools/scene/scene_names.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/base/printable.hpp"

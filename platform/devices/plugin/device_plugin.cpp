@@ -6,7 +6,6 @@
 
 #include <dlfcn.h>
 #include <exception>
-#include <utility>
 
 namespace tactus
 {

@@ -12,7 +12,6 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
-#include <string>
 
 namespace tactus
 {

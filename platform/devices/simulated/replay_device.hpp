@@ -8,7 +8,6 @@
 #include "transport/base/refusal.hpp"
 
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>

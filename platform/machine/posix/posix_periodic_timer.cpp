@@ -3,7 +3,6 @@
 
 #include "platform/machine/posix/posix_periodic_timer.hpp"
 
-#include "platform/machine/posix/posix_clock.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <cerrno>
