@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-
 #include "host_tools/scene/scene_names.hpp"
 
 #include "rt_core/base/assert.hpp"

@@ -4,7 +4,7 @@
 
 #include "platform/controller/run_results.hpp"
 #include "platform/loop/run_statistics.hpp"
-#include "platform/loop/safety_record.hpp"
+#include "platform/loop/safety_log.hpp"
 #include "platform/loop/scene_mailbox.hpp"
 #include "platform/machine/periodic_timer.hpp"
 #include "platform/machine/rt_thread.hpp"

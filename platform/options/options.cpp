@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-
 #include "platform/options/options.hpp"
 
 #include "platform/export/frame_export.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-
 #include "platform/scene/scene_parts.hpp"
 
 #include "rt_core/math/rotation.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "platform/choices/run_options.hpp"
-#include "platform/world/held_device.hpp"
 #include "platform/world/program_devices.hpp"
 #include "platform/world/world_options.hpp"
 #include "platform/world/world_parts.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-
 #include "transport/base/program_log.hpp"
 
 #include "rt_core/base/assert.hpp"

@@ -19,7 +19,6 @@
 
 /// Readers, one for each format. Refusals state the place in the file; read_mesh_file() adds the
 /// file's name and checks the properties common to all formats.
-
 namespace tactus::detail
 {
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-
 #include "platform/machine/pool_memory.hpp"
-
 #include "platform/machine/posix/linux_extras.hpp"
 #include "platform/machine/posix/memory_lock.hpp"
 #include "rt_core/base/arena.hpp"

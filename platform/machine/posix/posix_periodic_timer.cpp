@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-
 #include "platform/machine/posix/posix_periodic_timer.hpp"
 
 #include "rt_core/base/assert.hpp"

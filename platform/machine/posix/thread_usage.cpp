@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-
 #include "platform/machine/thread_usage.hpp"
 
 #include "platform/machine/posix/linux_extras.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/doctor/measured.hpp"
+#include "platform/diagnose/doctor/machine_view.hpp"
 
 #include <gtest/gtest.h>
 

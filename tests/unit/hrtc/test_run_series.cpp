@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/loop/run_series.hpp"
+#include "platform/loop/run_statistics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/loop/safety_record.hpp"
+#include "platform/loop/safety_log.hpp"
 
 #include <gtest/gtest.h>
 

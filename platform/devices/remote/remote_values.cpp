@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/devices/remote/remote_values.hpp"
+
 #include "rt_core/force/stiffness_rule.hpp"
 #include "transport/base/printable.hpp"
 
