@@ -27,6 +27,20 @@ using GridTriangle = std::array<GridPoint, 3>;
             static_cast<double>(point[2])};
 }
 
+struct GridPointHash
+{
+    [[nodiscard]] std::size_t operator()(const GridPoint& point) const noexcept
+    {
+        std::uint64_t hash = 0;
+        for (const std::int32_t value : point)
+        {
+            hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x9E37'79B9'7F4A'7C15ULL;
+            hash ^= hash >> 32U;
+        }
+        return static_cast<std::size_t>(hash);
+    }
+};
+
 /// A box of grid points, with its borders.
 struct GridBox
 {

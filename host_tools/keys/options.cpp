@@ -139,13 +139,9 @@ std::variant<Site, int> parse_options(CommandLine& line, int argc, char** argv)
     Site site;
     Names names;
     declare_options(line, site, names);
-    if (const auto code = line.parse(argc, argv))
+    if (const auto code = line.parse(argc, argv, [&] { return take_members(site, names); }))
     {
         return *code;
-    }
-    if (const std::string fault = take_members(site, names); !fault.empty())
-    {
-        return line.fail(fault, kExitUsage);
     }
     return site;
 }

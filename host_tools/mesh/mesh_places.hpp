@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/mesh/triangle_mesh.hpp"
 #include "host_tools/mesh/quantised_mesh.hpp"
+#include "host_tools/mesh/triangle_mesh.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <Eigen/Geometry>
@@ -38,6 +38,17 @@ namespace tactus
 {
     const auto& p = mesh.positions[vertex];
     return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+}
+
+/// Box of all vertices, in quanta.
+[[nodiscard]] inline Eigen::AlignedBox3d box_of(const QuantisedMesh& mesh)
+{
+    Eigen::AlignedBox3d box;
+    for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex)
+    {
+        box.extend(grid_point(mesh, vertex));
+    }
+    return box;
 }
 
 } // namespace tactus

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
 #include "host_tools/tactus/programs.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"

@@ -106,8 +106,6 @@ private:
     void report_guardian();
     void end_after_failure();
     [[nodiscard]] std::string keep_failed_frame();
-    void finish_recording();
-    void finish_trace();
     void note_topics();
 
     RunParts parts_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
+
 #include "platform/plot/page.hpp"
 #include "platform/report/latency_chart.hpp"
 #include "platform/report/report.hpp"
