@@ -5,7 +5,6 @@
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/suggestions.hpp"
-#include "transport/material_ranges.hpp"
 
 #include <fmt/format.h>
 

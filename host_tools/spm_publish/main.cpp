@@ -7,7 +7,6 @@
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/server_metrics.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
-#include "host_tools/spm_publish/watch.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
 #include "transport/base/number_form.hpp"

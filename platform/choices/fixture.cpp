@@ -4,7 +4,7 @@
 
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
-#include "transport/material_ranges.hpp"
+#include "transport/material_text.hpp"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include "platform/scene/scene_parts.hpp"
 #include "rt_core/math/rotation.hpp"
 #include "transport/base/number_form.hpp"
-#include "transport/material_ranges.hpp"
+#include "transport/material_text.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,6 @@
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/base/printable.hpp"
-#include "transport/material_ranges.hpp"
 #include "transport/material_text.hpp"
 #include "transport/model_name.hpp"
 

@@ -5,7 +5,6 @@
 #include "platform/devices/simulated/landed_operator.hpp"
 #include "platform/devices/simulated/landing_sites.hpp"
 #include "platform/devices/simulated/motion_maths.hpp"
-#include "platform/devices/simulated/phasor.hpp"
 #include "platform/devices/simulated/rotating_operators.hpp"
 
 #include <algorithm>

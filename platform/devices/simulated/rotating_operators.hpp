@@ -4,8 +4,8 @@
 
 #include "platform/devices/simulated/contact_slide.hpp"
 #include "platform/devices/simulated/landed_operator.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 #include "platform/devices/simulated/operator_motion.hpp"
-#include "platform/devices/simulated/phasor.hpp"
 #include "platform/devices/simulated/scripted_operator.hpp"
 #include "rt_core/math/rotation.hpp"
 
