@@ -3,6 +3,7 @@
 #include "platform/diagnose/self_check.hpp"
 
 #include "platform/controller/controller.hpp"
+#include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/devices/wrapped_device.hpp"
 #include "platform/machine/allocation_counter.hpp"

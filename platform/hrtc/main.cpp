@@ -6,6 +6,7 @@
 
 #include "platform/choices/messages.hpp"
 #include "platform/controller/controller.hpp"
+#include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/hrtc/subcommands.hpp"
 #include "platform/loop/assertion_brake.hpp"
