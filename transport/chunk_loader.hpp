@@ -12,6 +12,7 @@
 #include "transport/slot_bank.hpp"
 #include "transport/waiting_times.hpp"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 // Any thread, except the haptic one: it allocates, waits for the file and starts threads.
 namespace tactus

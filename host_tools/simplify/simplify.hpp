@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 // Any thread, except the haptic one: it allocates, starts threads and works on its arguments alone.

@@ -4,10 +4,15 @@
 
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/extract.hpp"
+#include "rt_core/base/result.hpp"
+#include "rt_core/math/vec3.hpp"
+#include "transport/base/refusal.hpp"
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 namespace tactus
 {
@@ -37,11 +42,15 @@ private:
     std::string output_;
 };
 
-} // namespace tactus
+/// Reads points as text, x y z in metres on each line; blank lines and those that begin with # are
+/// ignored. A refusal names the line.
+[[nodiscard]] Result<std::vector<Vec3>, Refusal> parse_points(std::string_view text);
 
-namespace tactus
-{
-class CommandLine;
+/// Prints the distances of the points of a file to a model's surface, one line each in their order,
+/// or all as one JSON object. Returns the reason if it fails.
+[[nodiscard]] std::optional<std::string>
+print_distances(const std::string& model_file, const std::string& point_file, bool as_json);
+
 } // namespace tactus
 
 namespace tactus::spm_inspect

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 // Any thread except the haptic one, because strings allocate.
 namespace tactus::hrtc

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/loop/cycle_measures.hpp"
 #include "platform/loop/deadline_account.hpp"
 #include "platform/machine/latency_histogram.hpp"
 #include "rt_core/math/infinity.hpp"

@@ -12,6 +12,7 @@
 #include "transport/served_model.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
