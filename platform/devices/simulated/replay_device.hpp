@@ -8,6 +8,7 @@
 #include "transport/base/refusal.hpp"
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
