@@ -12,7 +12,7 @@ namespace tactus
 {
 
 /// Receives the pieces that a link delivers. `bytes` are in coded form, unverified, and valid only
-/// during the call. A base mesh arrives in parts (transport/piece_parts.hpp); `key.number` is the
+/// during the call. A base mesh arrives in parts (transport/part_intake.hpp); `key.number` is the
 /// number of the part.
 class PieceSink
 {

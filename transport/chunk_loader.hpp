@@ -9,7 +9,6 @@
 #include "transport/chunk_link.hpp"
 #include "transport/log.hpp"
 #include "transport/part_intake.hpp"
-#include "transport/request_clock.hpp"
 #include "transport/slot_bank.hpp"
 #include "transport/waiting_times.hpp"
 

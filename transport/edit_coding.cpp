@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/edit_coding.hpp"
-
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/byte_io.hpp"
+#include "transport/edit_content.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <string>

@@ -3,7 +3,6 @@
 #include "transport/edit_state.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "rt_core/limits.hpp"
 #include "rt_core/math/smallest_union.hpp"
 
 #include <fmt/format.h>

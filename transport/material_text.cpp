@@ -2,16 +2,14 @@
 // Copyright the Tactus authors.
 #include "transport/material_text.hpp"
 
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
-#include "transport/material_ranges.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -78,5 +79,17 @@ struct BuiltModel
 [[nodiscard]] Result<BuiltModel, Refusal>
 build_model(const TriangleMesh& mesh, const std::string& source, const std::filesystem::path& path,
             const ModelOptions& options, const GridChoice& grid, std::vector<std::string>& notes);
+
+/// Peak memory, rounded up, from a mesh with this number of faces until its model is written.
+[[nodiscard]] std::uint64_t needed_mib(std::size_t faces);
+
+/// Memory that this program can use without swapping, limited by the machine and its control group;
+/// none if unknown. `root` replaces / in tests.
+[[nodiscard]] std::optional<std::uint64_t> available_mib(const std::filesystem::path& root = "/");
+
+/// Refuses a need above `allowed_mib`, or above the machine's available memory if that is not set,
+/// and states the least sufficient value. `what` names the mesh or file in the refusal.
+[[nodiscard]] std::optional<Refusal> check_memory(const std::string& what, std::uint64_t needed,
+                                                  std::optional<std::uint32_t> allowed_mib);
 
 } // namespace tactus

@@ -7,7 +7,7 @@
 #include "rt_core/math/rotation.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/object_pose.hpp"
-#include "transport/material_ranges.hpp"
+#include "transport/material_text.hpp"
 
 #include <fmt/format.h>
 

@@ -12,7 +12,7 @@
 #include "transport/chunk_loader.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/inside_test.hpp"
-#include "transport/material_ranges.hpp"
+#include "transport/material_text.hpp"
 #include "transport/model_name.hpp"
 #include "transport/pool_plan.hpp"
 #include "transport/store/static_model.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/edit/convex_hull.hpp"
-
+#include "host_tools/edit/exact_shapes.hpp"
 #include "rt_core/math/orientation.hpp"
 
 #include <algorithm>

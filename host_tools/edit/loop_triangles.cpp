@@ -6,8 +6,7 @@
 /// wrong choice costs only shape. Holes are joined to the loop around them by a pair of opposite
 /// edges, which cancel.
 
-#include "host_tools/edit/loop_triangles.hpp"
-
+#include "host_tools/edit/exact_shapes.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <algorithm>

@@ -19,7 +19,6 @@
 
 #include "host_tools/edit/surface_cut.hpp"
 
-#include "host_tools/edit/loop_triangles.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/math/orientation.hpp"
 

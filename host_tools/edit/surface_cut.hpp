@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/edit/convex_hull.hpp"
+#include "host_tools/edit/exact_shapes.hpp"
 #include "host_tools/edit/surface_faces.hpp"
 #include "host_tools/edit/sweep.hpp"
 #include "rt_core/math/triangle.hpp"

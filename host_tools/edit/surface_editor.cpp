@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/edit/surface_editor.hpp"
 
-#include "host_tools/edit/merge_pieces.hpp"
 #include "host_tools/encode/replay.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
@@ -14,7 +13,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -29,20 +27,6 @@ namespace
 constexpr std::uint64_t kShifts = 16;
 /// Largest number of faces that are compared in the search for a near one.
 constexpr std::size_t kBucketSamples = 256;
-
-struct GridPointHash
-{
-    std::size_t operator()(const GridPoint& point) const noexcept
-    {
-        std::uint64_t hash = 0;
-        for (const std::int32_t value : point)
-        {
-            hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x9E37'79B9'7F4A'7C15ULL;
-            hash ^= hash >> 32U;
-        }
-        return static_cast<std::size_t>(hash);
-    }
-};
 
 Triangle to_triangle(const GridTriangle& face)
 {

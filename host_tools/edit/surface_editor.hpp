@@ -46,7 +46,7 @@ struct SurfaceChange
 ///
 /// After a cut, the new faces and the added faces round them are merged: vertices are removed as
 /// long as the surface stays within SweptRegion::slack_quanta of all points that were removed
-/// before, however many edits lie between (merge_pieces.hpp). An edit has only faces that differ.
+/// before, however many edits lie between (merge_pieces()). An edit has only faces that differ.
 ///
 /// A refused call changes nothing. Its text is one line with the value and the allowed range.
 class SurfaceEditor

@@ -4,6 +4,8 @@
 
 #include "rt_core/base/assert.hpp"
 
+#include <bit>
+
 namespace tactus
 {
 

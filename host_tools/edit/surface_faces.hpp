@@ -2,13 +2,15 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "rt_core/math/triangle.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 // One thread at a time.
@@ -24,6 +26,20 @@ using GridTriangle = std::array<GridPoint, 3>;
     return {static_cast<double>(point[0]), static_cast<double>(point[1]),
             static_cast<double>(point[2])};
 }
+
+struct GridPointHash
+{
+    [[nodiscard]] std::size_t operator()(const GridPoint& point) const noexcept
+    {
+        std::uint64_t hash = 0;
+        for (const std::int32_t value : point)
+        {
+            hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x9E37'79B9'7F4A'7C15ULL;
+            hash ^= hash >> 32U;
+        }
+        return static_cast<std::size_t>(hash);
+    }
+};
 
 /// A box of grid points, with its borders.
 struct GridBox
@@ -120,5 +136,22 @@ private:
     std::uint32_t least_level_;
     std::uint32_t count_{0};
 };
+
+/// The nearest of several triangles to a point, and its squared distance.
+[[nodiscard]] std::pair<std::size_t, double> nearest_of(std::span<const Triangle> faces,
+                                                        const Vec3& point);
+
+/// Removes vertices of a part of a surface. A vertex is removed by moving it to a neighbour, so all
+/// edges that cancelled before still do, and all vertices stay on the grid. Vertices of `fixed`
+/// stay, and those where `faces` don't form one closed fan.
+///
+/// Tolerance. Errors of successive merges don't add up. Each removed point becomes a mark of the
+/// nearest face that replaces it: vertices, and crossings of old with new edges where these are far
+/// apart. A removal is allowed if the old and the new faces are at most `slack_quanta` apart, and
+/// all marks of the old faces lie within `slack_quanta` of the new ones. So every mark stays within
+/// the slack of the surface; points between marks were found up to 1.1 slacks away. A face keeps
+/// kMaxMarks marks: the farthest from its plane, and of the others those far from each other.
+void merge_pieces(std::vector<SurfaceFace>& faces, std::span<const GridPoint> fixed,
+                  double slack_quanta);
 
 } // namespace tactus

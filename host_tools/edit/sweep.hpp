@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/edit/convex_hull.hpp"
+#include "host_tools/edit/exact_shapes.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/math/vec3.hpp"

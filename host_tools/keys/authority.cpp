@@ -10,14 +10,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <openssl/bn.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 #include <optional>
-#include <string>
 #include <system_error>
 #include <utility>
 

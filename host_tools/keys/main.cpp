@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/keys/options.hpp"
 #include "host_tools/keys/site.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"

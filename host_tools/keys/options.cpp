@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/keys/options.hpp"
-
+#include "host_tools/keys/site.hpp"
 #include "platform/program/command_line.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/dds/key_folder.hpp"
@@ -140,13 +139,9 @@ std::variant<Site, int> parse_options(CommandLine& line, int argc, char** argv)
     Site site;
     Names names;
     declare_options(line, site, names);
-    if (const auto code = line.parse(argc, argv))
+    if (const auto code = line.parse(argc, argv, [&] { return take_members(site, names); }))
     {
         return *code;
-    }
-    if (const std::string fault = take_members(site, names); !fault.empty())
-    {
-        return line.fail(fault, kExitUsage);
     }
     return site;
 }

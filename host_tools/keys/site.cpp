@@ -13,17 +13,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <sys/stat.h>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 namespace tactus::keys
 {

@@ -8,7 +8,13 @@
 #include <cstdint>
 #include <ctime>
 #include <string>
+#include <variant>
 #include <vector>
+
+namespace tactus
+{
+class CommandLine;
+} // namespace tactus
 
 namespace tactus::keys
 {
@@ -67,5 +73,9 @@ struct IssuedKeys
 /// and a drop-in that gives them to the systemd service of the role. Refused if a file can't be
 /// read or written.
 [[nodiscard]] Result<std::vector<IssuedKeys>, Refusal> make_keys(const Site& site, std::time_t now);
+
+/// Reads the command line and the option file. Returns the exit code if the program should end:
+/// after --help, --version, or wrong usage, which gets one line on stderr.
+[[nodiscard]] std::variant<Site, int> parse_options(CommandLine& line, int argc, char** argv);
 
 } // namespace tactus::keys

@@ -3,12 +3,11 @@
 #include "host_tools/mesh/prepare.hpp"
 
 #include "host_tools/mesh/detail/prepare_steps.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>

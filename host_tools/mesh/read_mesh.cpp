@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/read_mesh.hpp"
 
-#include "host_tools/mesh/detail/read_input.hpp"
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
 #include "transport/base/printable.hpp"
@@ -14,9 +13,6 @@
 #include <array>
 #include <cmath>
 #include <new>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
 
 namespace tactus

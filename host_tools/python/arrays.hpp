@@ -5,6 +5,7 @@
 #include "host_tools/c/tactus.h"
 
 #include <algorithm>
+#include <optional>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <stdexcept>
@@ -38,6 +39,18 @@ void check(Call&& call)
     default:
         throw TactusError(error.text);
     }
+}
+
+/// Like check(), while other threads of Python run.
+template <typename Call>
+void check_unlocked(Call&& call)
+{
+    check(
+        [&](tactus_error* error)
+        {
+            const py::gil_scoped_release others_may_run;
+            return call(error);
+        });
 }
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -88,6 +101,23 @@ inline void read_pose(tactus_pose& pose, const py::object& rotation,
         check_shape(place, {3}, "translation_m");
         std::copy_n(place.data(), 3, pose.translation_m);
     }
+}
+
+inline tactus_material material_of(double stiffness_n_per_m, double static_friction,
+                                   const std::optional<double>& dynamic_friction,
+                                   double damping_n_s_per_m, double viscosity_n_s_per_m,
+                                   double texture_height_m, double texture_length_m)
+{
+    tactus_material material;
+    tactus_material_default(&material);
+    material.stiffness_n_per_m = stiffness_n_per_m;
+    material.static_friction = static_friction;
+    material.dynamic_friction = dynamic_friction.value_or(static_friction);
+    material.damping_n_s_per_m = damping_n_s_per_m;
+    material.viscosity_n_s_per_m = viscosity_n_s_per_m;
+    material.texture_height_m = texture_height_m;
+    material.texture_length_m = texture_length_m;
+    return material;
 }
 
 /// Adds the class World and the function touch() to the module.

@@ -37,10 +37,8 @@ public:
     }
     Model(const std::string& name, std::uint32_t domain, double wait_s)
     {
-        check(
-            [&](tactus_error* error)
-            {
-                const py::gil_scoped_release others_may_run;
+        check_unlocked(
+            [&](tactus_error* error) {
                 return tactus_model_find(TACTUS_ABI, name.c_str(), domain, wait_s, &model_, error);
             });
         read_info();
@@ -226,12 +224,8 @@ public:
         {
             warn_of_insides(positions.data());
         }
-        check(
-            [&](tactus_error* error)
-            {
-                const py::gil_scoped_release others_may_run;
-                return tactus_frame_run(frame_, &poses, error);
-            });
+        check_unlocked([&](tactus_error* error)
+                       { return tactus_frame_run(frame_, &poses, error); });
         return answers;
     }
 
@@ -255,12 +249,7 @@ public:
 
     void load()
     {
-        check(
-            [&](tactus_error* error)
-            {
-                const py::gil_scoped_release others_may_run;
-                return tactus_frame_load(frame_, error);
-            });
+        check_unlocked([&](tactus_error* error) { return tactus_frame_load(frame_, error); });
     }
 
     void place(std::uint32_t object, const py::object& rotation, const py::object& translation_m,
@@ -277,15 +266,9 @@ public:
               double dynamic_friction, double damping_n_s_per_m, double viscosity_n_s_per_m,
               double texture_height_m, double texture_length_m)
     {
-        tactus_material material;
-        tactus_material_default(&material);
-        material.stiffness_n_per_m = stiffness_n_per_m;
-        material.static_friction = static_friction;
-        material.dynamic_friction = dynamic_friction;
-        material.damping_n_s_per_m = damping_n_s_per_m;
-        material.viscosity_n_s_per_m = viscosity_n_s_per_m;
-        material.texture_height_m = texture_height_m;
-        material.texture_length_m = texture_length_m;
+        const tactus_material material =
+            material_of(stiffness_n_per_m, static_friction, dynamic_friction, damping_n_s_per_m,
+                        viscosity_n_s_per_m, texture_height_m, texture_length_m);
         check([&](tactus_error* error)
               { return tactus_frame_feel(frame_, object, &material, error); });
     }
@@ -325,12 +308,9 @@ class StaticModel
 public:
     explicit StaticModel(const std::string& path)
     {
-        check(
+        check_unlocked(
             [&](tactus_error* error)
-            {
-                const py::gil_scoped_release others_may_run;
-                return tactus_static_model_open(TACTUS_ABI, path.c_str(), &model_, error);
-            });
+            { return tactus_static_model_open(TACTUS_ABI, path.c_str(), &model_, error); });
     }
     StaticModel(const StaticModel&) = delete;
     StaticModel& operator=(const StaticModel&) = delete;
@@ -348,10 +328,9 @@ public:
         double* const upper_m = answers.upper_m.mutable_data();
         std::uint8_t* const side = answers.side.mutable_data();
         double* const nearest_m = answers.nearest_m.mutable_data();
-        check(
+        check_unlocked(
             [&](tactus_error* error)
             {
-                const py::gil_scoped_release others_may_run;
                 return tactus_static_model_distances(model_, static_cast<std::size_t>(count),
                                                      points.data(), lower_m, upper_m, side,
                                                      nearest_m, error);

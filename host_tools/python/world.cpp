@@ -24,18 +24,6 @@ namespace
 /// Owner of a world; handles keep it alive.
 using Owner = std::shared_ptr<tactus_world>;
 
-/// Calls a function of a world while other threads of Python run.
-template <typename Call>
-void check_unlocked(Call&& call)
-{
-    check(
-        [&](tactus_error* error)
-        {
-            const py::gil_scoped_release others_may_run;
-            return call(error);
-        });
-}
-
 /// Three numbers.
 Numbers vector_of(const py::object& given, const char* name)
 {
@@ -89,23 +77,6 @@ py::array_t<std::uint32_t> faces_of(const py::object& given)
         written[i] = static_cast<std::uint32_t>(index);
     }
     return faces;
-}
-
-tactus_material material_of(double stiffness_n_per_m, double static_friction,
-                            const std::optional<double>& dynamic_friction, double damping_n_s_per_m,
-                            double viscosity_n_s_per_m, double texture_height_m,
-                            double texture_length_m)
-{
-    tactus_material material;
-    tactus_material_default(&material);
-    material.stiffness_n_per_m = stiffness_n_per_m;
-    material.static_friction = static_friction;
-    material.dynamic_friction = dynamic_friction.value_or(static_friction);
-    material.damping_n_s_per_m = damping_n_s_per_m;
-    material.viscosity_n_s_per_m = viscosity_n_s_per_m;
-    material.texture_height_m = texture_height_m;
-    material.texture_length_m = texture_length_m;
-    return material;
 }
 
 class WorldObject

@@ -3,8 +3,7 @@
 #include "host_tools/scene/scene.hpp"
 
 #include "host_tools/scene/detail/gltf_nodes.hpp"
-#include "host_tools/scene/left_out.hpp"
-#include "host_tools/scene/unique_names.hpp"
+#include "host_tools/scene/scene_names.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <fmt/format.h>

@@ -6,7 +6,6 @@
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
-#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>

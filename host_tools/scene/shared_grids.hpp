@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 // Any thread, except the haptic one: it allocates, and works on its own data alone.

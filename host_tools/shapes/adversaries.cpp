@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
 
 /// Meshes that are difficult for all later stages: needles, poles, thin walls, separate pieces.
 namespace tactus

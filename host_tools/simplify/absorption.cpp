@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/simplify/absorption.hpp"
 
-#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
 #include "host_tools/simplify/parallel_blocks.hpp"
 #include "host_tools/simplify/vertex_search.hpp"
 

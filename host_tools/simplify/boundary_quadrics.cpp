@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/simplify/boundary_quadrics.hpp"
 
-#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
 
 #include <Eigen/Geometry>
 
@@ -18,22 +18,10 @@ namespace
 /// open.
 constexpr double kBoundaryWeight = 10;
 
-Vec3 middle_of(const QuantisedMesh& mesh)
-{
-    Vec3 low = grid_point(mesh, 0);
-    Vec3 high = low;
-    for (std::uint32_t v = 1; v < mesh.positions.size(); ++v)
-    {
-        low = low.cwiseMin(grid_point(mesh, v));
-        high = high.cwiseMax(grid_point(mesh, v));
-    }
-    return 0.5 * (low + high);
-}
-
 } // namespace
 
 BoundaryQuadrics::BoundaryQuadrics(const QuantisedMesh& mesh, const CollapseMesh& original)
-    : origin_(middle_of(mesh))
+    : origin_(box_of(mesh).center())
 {
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f)
     {

@@ -2,9 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/simplify/candidates.hpp"
 
-#include "host_tools/simplify/collapse_mesh.hpp"
-#include "host_tools/simplify/grid_point.hpp"
-#include "host_tools/simplify/simplify.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
 #include "rt_core/base/static_vector.hpp"
 #include "rt_core/math/vec3.hpp"
 

@@ -7,7 +7,6 @@
 #include "host_tools/simplify/simplify.hpp"
 #include "host_tools/simplify/surface_samples.hpp"
 
-#include <array>
 #include <cstdint>
 #include <tuple>
 #include <vector>

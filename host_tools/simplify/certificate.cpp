@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/simplify/certificate.hpp"
 
-#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
 
 #include <Eigen/Geometry>
 
@@ -31,18 +31,6 @@ constexpr double kSlackFactor = 1 + 1e-12;
 
 constexpr std::array<TrianglePoint, 3> kWholeTriangle{
     {{0, 0}, {TrianglePoint::kOne, 0}, {0, TrianglePoint::kOne}}};
-
-double diagonal_of(const QuantisedMesh& mesh)
-{
-    Vec3 low = grid_point(mesh, 0);
-    Vec3 high = low;
-    for (std::uint32_t v = 1; v < mesh.positions.size(); ++v)
-    {
-        low = low.cwiseMin(grid_point(mesh, v));
-        high = high.cwiseMax(grid_point(mesh, v));
-    }
-    return (high - low).norm();
-}
 
 float float_not_below(double value) noexcept
 {
@@ -77,7 +65,7 @@ void visit_lists(std::span<std::uint32_t> heads, const Next& next, const Visit& 
 
 Certificate::Certificate(const QuantisedMesh& mesh, unsigned workers)
     : mesh_(mesh)
-    , diagonal_(diagonal_of(mesh))
+    , diagonal_(box_of(mesh).diagonal().norm())
     , errors_(mesh.faces.size(), 0)
     , first_whole_(mesh.faces.size())
     , next_whole_(mesh.faces.size(), kNone)

@@ -5,7 +5,6 @@
 #include "rt_core/base/assert.hpp"
 
 #include <algorithm>
-#include <span>
 #include <string>
 #include <utility>
 

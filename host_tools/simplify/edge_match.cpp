@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/simplify/edge_match.hpp"
+#include "host_tools/simplify/collapse_mesh.hpp"
 
 #include <algorithm>
 #include <cstddef>

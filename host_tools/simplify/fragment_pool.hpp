@@ -5,7 +5,6 @@
 #include "rt_core/base/assert.hpp"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>

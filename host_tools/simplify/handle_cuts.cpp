@@ -3,8 +3,8 @@
 #include "host_tools/simplify/handle_cuts.hpp"
 
 #include "host_tools/mesh/index_lists.hpp"
-#include "host_tools/simplify/edge_match.hpp"
-#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
+#include "host_tools/simplify/collapse_mesh.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <algorithm>

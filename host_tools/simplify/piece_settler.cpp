@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/simplify/piece_settler.hpp"
-
-#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
+#include "host_tools/simplify/certificate.hpp"
 
 #include <Eigen/Geometry>
 

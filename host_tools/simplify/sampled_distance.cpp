@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/simplify/sampled_distance.hpp"
 
-#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
 #include "host_tools/simplify/point_triangle.hpp"
 #include "rt_core/base/assert.hpp"
 

@@ -11,11 +11,9 @@
 #include "host_tools/simplify/surface_samples.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 
 namespace tactus

@@ -40,13 +40,34 @@ class SurfaceSamples
 public:
     /// Makes room for samples of the faces in `present`; `face_count` is the number of faces of the
     /// mesh.
-    void start(std::span<const std::uint32_t> present, std::size_t face_count);
+    void start(std::span<const std::uint32_t> present, std::size_t face_count)
+    {
+        slot_.assign(face_count, Collapse::kNoFace);
+        faces_.assign(present.size(), {});
+        for (std::uint32_t slot = 0; slot < present.size(); ++slot)
+        {
+            slot_[present[slot]] = slot;
+        }
+    }
 
     /// Sets the samples of a face. Threads may set different faces at the same time.
     void set(std::uint32_t face, const FaceSamples& samples) { faces_[slot_[face]] = samples; }
 
     /// Fills `star` with the samples of the faces.
-    void gather(std::span<const std::uint32_t> faces, StarSamples& star) const;
+    void gather(std::span<const std::uint32_t> faces, StarSamples& star) const
+    {
+        star.points.clear();
+        star.areas.clear();
+        for (const std::uint32_t face : faces)
+        {
+            for (const SurfacePoint& point : faces_[slot_[face]])
+            {
+                star.points.push_back({static_cast<double>(point.x), static_cast<double>(point.y),
+                                       static_cast<double>(point.z)});
+                star.areas.push_back(static_cast<double>(point.area));
+            }
+        }
+    }
 
 private:
     std::vector<std::uint32_t> slot_; ///< Index into `faces_`, by face of the mesh.

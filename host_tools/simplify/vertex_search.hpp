@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/simplify/grid_point.hpp"
+#include "host_tools/mesh/mesh_places.hpp"
 #include "host_tools/simplify/simplify.hpp"
 #include "rt_core/base/static_vector.hpp"
 

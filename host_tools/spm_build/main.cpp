@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/build/build_model.hpp"
-#include "host_tools/build/memory_need.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/spm_build/build_scene.hpp"
 #include "host_tools/spm_build/options.hpp"
 #include "host_tools/spm_build/placing.hpp"
-#include "host_tools/spm_build/size_notes.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/progress.hpp"
 #include "platform/program/run_program.hpp"
 #include "transport/base/atomic_file.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/program_log.hpp"
 
 #include <fmt/format.h>

@@ -142,14 +142,14 @@ std::variant<Options, int> parse_options(CommandLine& line, int argc, char** arg
     Options options;
     Words words;
     declare_options(line, options, words);
-    if (const auto code = line.parse(argc, argv))
+    const auto find_fault = [&]
+    {
+        options.format = mesh_format(words.format);
+        return check_together(line, options);
+    };
+    if (const auto code = line.parse(argc, argv, find_fault))
     {
         return *code;
-    }
-    options.format = mesh_format(words.format);
-    if (const std::string fault = check_together(line, options); !fault.empty())
-    {
-        return line.fail(fault, kExitUsage);
     }
     options.model.metres_per_unit = *metres_per_unit(options.unit);
     if (!options.is_of_scene()) // Placing applies to the objects of a scene, not to its models.

@@ -4,16 +4,14 @@
 
 #include "host_tools/mesh/index_lists.hpp"
 #include "host_tools/mesh/mesh_places.hpp"
-#include "host_tools/scene/left_out.hpp"
+#include "host_tools/scene/scene_names.hpp"
 #include "host_tools/scene/shared_grids.hpp"
-#include "host_tools/scene/unique_names.hpp"
 #include "platform/program/progress.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <map>
 #include <numeric>

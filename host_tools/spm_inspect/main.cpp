@@ -3,11 +3,10 @@
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/false_claims.hpp"
 #include "host_tools/spm_inspect/options.hpp"
-#include "host_tools/spm_inspect/point_distances.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/progress.hpp"
 #include "platform/program/run_program.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/store/model_store.hpp"
 

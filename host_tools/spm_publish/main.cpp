@@ -7,15 +7,13 @@
 #include "host_tools/spm_publish/pose_script.hpp"
 #include "host_tools/spm_publish/server_metrics.hpp"
 #include "host_tools/spm_publish/serving_report.hpp"
-#include "host_tools/spm_publish/watch.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
-#include "platform/program/stop_signals.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_server.hpp"
-#include "transport/dds/security.hpp"
+#include "transport/dds/key_folder.hpp"
 #include "transport/dds/telemetry.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +23,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>

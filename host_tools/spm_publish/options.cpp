@@ -235,13 +235,9 @@ std::variant<Options, int> parse_options(CommandLine& line, int argc, char** arg
 {
     Options options;
     declare_options(line, options);
-    if (const auto code = line.parse(argc, argv))
+    if (const auto code = line.parse(argc, argv, [&] { return check_together(options); }))
     {
         return *code;
-    }
-    if (const std::string fault = check_together(options); !fault.empty())
-    {
-        return line.fail(fault, kExitUsage);
     }
     return options;
 }

@@ -59,4 +59,22 @@ splittable_part(const DecodedModel& model, std::span<const RefinementStatePage> 
                                                      std::span<const RefinementStatePage> pages,
                                                      const EditState* edits = nullptr);
 
+/// Maximum level of tree_box_bytes(): the nodes of deeper levels are all blocks.
+inline constexpr std::uint32_t kTreeLevelsMax = 24;
+
+/// Boxes of the controller's AB-Tree: nodes at depth `level` (0: root), and blocks at smaller
+/// depths. The tree depends on the faces only, so it is rebuilt from the same pages. Refused like
+/// cut_bytes().
+[[nodiscard]] Result<std::string, Refusal>
+tree_box_bytes(const DecodedModel& model, std::span<const RefinementStatePage> pages,
+               std::uint32_t level);
+
+/// Influence boxes of these chunks, as the page reads boxes (tree_box_bytes()). A tool's sphere
+/// outside of a box needs no record of its chunk. The chunk ids must ascend. Waits for missing
+/// index pages (KnownModel::bring). Refused if the model lacks a chunk.
+[[nodiscard]] Result<std::string, Refusal> chunk_box_bytes(KnownModel& model,
+                                                           std::span<const ChunkId> chunks);
+/// Chunk numbers of the pages.
+[[nodiscard]] std::vector<ChunkId> chunks_of(std::span<const RefinementStatePage> pages);
+
 } // namespace tactus::view

@@ -3,7 +3,6 @@
 #include "host_tools/spm_view/feed.hpp"
 
 #include "transport/content_hash.hpp"
-#include "transport/model_name.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,9 +14,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <span>
-#include <string>
 #include <string_view>
-#include <utility>
 
 namespace tactus::view
 {

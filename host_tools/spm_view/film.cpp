@@ -9,15 +9,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cctype>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <iterator>
-#include <type_traits>
 #include <variant>
 
 namespace tactus::view

@@ -9,7 +9,6 @@
 #include "host_tools/spm_view/web_server.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
-#include "platform/program/stop_signals.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/dds/telemetry.hpp"
 
@@ -17,7 +16,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>

@@ -11,7 +11,6 @@
 #include <arpa/inet.h>
 #include <charconv>
 #include <netinet/in.h>
-#include <optional>
 #include <system_error>
 
 namespace tactus::view

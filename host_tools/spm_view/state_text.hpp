@@ -5,7 +5,10 @@
 #include "host_tools/spm_view/film.hpp"
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/model_shelf.hpp"
+#include "transport/refinement_state.hpp"
+#include "transport/telemetry.hpp"
 
+#include <span>
 #include <string>
 
 // Any thread: results depend on the arguments alone. Strings allocate.
@@ -21,5 +24,11 @@ namespace tactus::view
 
 /// Snapshot in the text format of Prometheus: counters and gauges of each controller.
 [[nodiscard]] std::string metrics_text(const Snapshot& snapshot);
+
+/// Text about the force of a tool: "on", or "off: " and for each cause the condition under which
+/// the force returns. `models` are those of the tool's controller. Any thread.
+[[nodiscard]] std::string force_words(const RefinementStateTool& tool,
+                                      const ToolTelemetry& telemetry,
+                                      std::span<const ModelTelemetry> models);
 
 } // namespace tactus::view

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "host_tools/spm_view/web_server.hpp"
 
-#include "host_tools/spm_view/boxes.hpp"
 #include "host_tools/spm_view/cut.hpp"
 #include "host_tools/spm_view/feed.hpp"
 #include "host_tools/spm_view/page.hpp"

@@ -7,8 +7,8 @@
 #include "host_tools/tactus/programs.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <fmt/format.h>
 

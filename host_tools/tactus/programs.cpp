@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/tactus/programs.hpp"
 
-#include "platform/program/stop_signals.hpp"
+#include "platform/program/run_program.hpp"
 #include "transport/base/exit_codes.hpp"
 #include "transport/base/program_log.hpp"
 

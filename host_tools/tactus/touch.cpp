@@ -3,7 +3,7 @@
 
 #include "host_tools/tactus/programs.hpp"
 #include "platform/program/command_line.hpp"
-#include "platform/program/stop_signals.hpp"
+#include "platform/program/run_program.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include <csignal>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>

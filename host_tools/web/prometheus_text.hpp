@@ -4,7 +4,6 @@
 
 #include "transport/dds/telemetry.hpp"
 
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>

@@ -7,15 +7,14 @@
 #include "platform/devices/dhd/dhd_device.hpp"
 #include "platform/devices/dhd/dhd_guard.hpp"
 #include "platform/devices/plugin/device_plugin.hpp"
-#include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/replay_device.hpp"
 #include "platform/devices/udp/udp_device.hpp"
 #include "platform/recording/recording.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/rotation.hpp"
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +23,6 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 namespace tactus::hrtc

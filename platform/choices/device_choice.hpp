@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/choices/placement.hpp"
 #include "platform/devices/haptic_device.hpp"
 #include "platform/devices/simulated/device_classes.hpp"
 #include "platform/devices/simulated/faulty_device.hpp"
@@ -23,11 +22,9 @@
 
 namespace tactus
 {
-
 class Clock;
 class DeviceGuard;
 struct ReplayDeviceOptions;
-
 } // namespace tactus
 
 namespace tactus::hrtc
@@ -105,5 +102,10 @@ struct DeviceWait
 /// bytes a frame.
 [[nodiscard]] Result<ReplayDeviceOptions, Refusal> read_recorded_motion(const std::string& path,
                                                                         std::size_t tool);
+
+/// Parses X,Y,Z[,RX,RY,RZ[,SCALE]]: the pose in the world of an object's or device's source frame.
+/// X,Y,Z is the translation in metres, RX,RY,RZ the rotation vector (axis times angle) in degrees,
+/// and SCALE the scale.
+[[nodiscard]] Result<Similarity, Refusal> parse_placement(std::string_view text);
 
 } // namespace tactus::hrtc

@@ -4,14 +4,13 @@
 
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
-#include "transport/material_ranges.hpp"
+#include "transport/material_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 #include <vector>
 
 namespace tactus::hrtc

@@ -5,7 +5,7 @@
 #include "platform/devices/simulated/simulated_device.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/work_budget.hpp"
-#include "transport/material_ranges.hpp"
+#include "transport/material_text.hpp"
 
 #include <cstdint>
 

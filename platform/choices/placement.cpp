@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/choices/placement.hpp"
-
+#include "platform/choices/device_choice.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/number_form.hpp"
 

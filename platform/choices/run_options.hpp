@@ -5,7 +5,6 @@
 #include "platform/choices/device_choice.hpp"
 #include "platform/choices/file_readers.hpp"
 #include "platform/choices/fixture_choice.hpp"
-#include "platform/choices/placement.hpp"
 #include "platform/choices/scene_materials.hpp"
 #include "platform/choices/tool_choice.hpp"
 #include "platform/devices/simulated/faulty_device.hpp"

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/choices/scene_materials.hpp"
 
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/base/suggestions.hpp"
 #include "transport/material_text.hpp"
 
 #include <fmt/format.h>

@@ -5,14 +5,13 @@
 #include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
 #include "rt_core/limits.hpp"
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <set>
 #include <tuple>

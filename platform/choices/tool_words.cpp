@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/choices/tool_words.hpp"
-
 #include "platform/choices/run_options.hpp"
+#include "platform/choices/tool_choice.hpp"
 #include "platform/devices/dhd/dhd_device.hpp"
-#include "platform/devices/remote/info_fault.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 #include "platform/loop/burr.hpp"
 #include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"

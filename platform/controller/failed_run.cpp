@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <system_error>
 #include <unistd.h>
-#include <utility>
 #include <vector>
 
 namespace tactus::hrtc

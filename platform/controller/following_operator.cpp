@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/controller/following_operator.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace tactus::hrtc

@@ -7,10 +7,8 @@
 #include "rt_core/scene/object_table.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/chunk_loader.hpp"
-#include "transport/telemetry_from_frame.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <utility>
 #include <vector>
 

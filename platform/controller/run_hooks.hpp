@@ -6,6 +6,11 @@
 #include <functional>
 #include <string>
 
+namespace tactus
+{
+class EditMailbox;
+} // namespace tactus
+
 namespace tactus::hrtc
 {
 
@@ -22,6 +27,15 @@ struct RunHooks
     bool notifies_manager{false};
 
     [[nodiscard]] bool goes_on() const { return !is_stopped || !is_stopped(); }
+};
+
+class CutTap;
+
+/// Edits of a program's own models. All must outlive the run.
+struct ProgramEdits
+{
+    EditMailbox* mailbox{nullptr}; ///< Null if no model can be edited, or a server does it.
+    CutTap* cuts{nullptr};         ///< Null if no tool carves.
 };
 
 } // namespace tactus::hrtc

@@ -13,7 +13,6 @@
 #include "platform/loop/hand_tap.hpp"
 #include "platform/machine/posix/linux_extras.hpp"
 #include "platform/scene/program_scene.hpp"
-#include "platform/scene/scene_choice.hpp"
 #include "transport/base/atomic_file.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/store/store_link.hpp"
@@ -22,13 +21,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <unistd.h>
 #include <utility>
-#include <vector>
 
 namespace tactus::hrtc
 {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "platform/choices/run_options.hpp"
-#include "platform/controller/program_edits.hpp"
 #include "platform/controller/recorder.hpp"
 #include "platform/controller/run_hooks.hpp"
 #include "platform/controller/trace_file.hpp"

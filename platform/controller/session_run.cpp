@@ -17,7 +17,7 @@
 #include "platform/machine/system_call_trap.hpp"
 #include "platform/scene/program_scene.hpp"
 #include "rt_core/scene/object_table.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/inside_test.hpp"
 
 #include <fmt/format.h>
@@ -25,15 +25,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 namespace tactus::hrtc
 {
@@ -63,6 +60,25 @@ FinishedRun empty_run(const Controller& controller, const Options& options)
             .period = period,
             .started = std::time(nullptr),
             .safety = SafetyRecord(tools)};
+}
+
+/// Finishes a file of a complete or failed run; null if there is none. Logs a refusal.
+template <typename File, typename FileResult>
+void finish_file(const std::string& option, File* file, std::optional<FileResult>& result,
+                 std::optional<std::string>& error)
+{
+    if (file == nullptr)
+    {
+        return;
+    }
+    const auto finished = file->finish();
+    if (!finished)
+    {
+        error = finished.error().text;
+        log_error(option + ": " + *error);
+        return;
+    }
+    result = finished.value();
 }
 
 /// Budget governor; none in virtual time, where frames take no time.
@@ -498,7 +514,7 @@ void SessionRun::end_after_failure()
     if (loop_.has_failed() || AssertionBrake::has_failed())
     {
         const std::string advice = keep_failed_frame();
-        finish_trace();
+        finish_file("--trace", parts_.trace, done_.trace, done_.trace_error);
         std::fflush(nullptr);
         AssertionBrake::end_process(advice);
     }
@@ -517,7 +533,7 @@ std::string SessionRun::keep_failed_frame()
         {
             parts_.recorder->add_failed(*failed);
         }
-        finish_recording();
+        finish_file("--record", parts_.recorder, done_.recording, done_.recording_error);
         return failed && done_.recording && done_.recording->lost_from == kNoFrame
                    ? fmt::format("'hrtc --replay {}' repeats the failure",
                                  parts_.options.record_path)
@@ -558,8 +574,8 @@ FinishedRun SessionRun::finish()
     take_events();
     done_.safety.finish(supervisor_.brakes(), loop_.safety_log().lost() + supervisor_.log().lost());
     transport_thread_.reset();
-    finish_recording();
-    finish_trace();
+    finish_file("--record", parts_.recorder, done_.recording, done_.recording_error);
+    finish_file("--trace", parts_.trace, done_.trace, done_.trace_error);
     done_.thread = haptic_thread_ ? haptic_thread_->report() : RtThreadReport{};
     done_.supervisor_fifo = is_supervised && supervisor_thread_->report().fifo;
     done_.timer = time_.timer().counts();
@@ -570,40 +586,6 @@ FinishedRun SessionRun::finish()
         log_line("ran without a right: " + line);
     }
     return std::move(done_);
-}
-
-/// Finishes the recording after a complete or failed run. Logs a refusal.
-void SessionRun::finish_recording()
-{
-    if (parts_.recorder == nullptr)
-    {
-        return;
-    }
-    const auto recording = parts_.recorder->finish();
-    if (!recording)
-    {
-        done_.recording_error = recording.error().text;
-        log_error("--record: " + *done_.recording_error);
-        return;
-    }
-    done_.recording = recording.value();
-}
-
-/// Finishes the trace after a complete or failed run. Logs a refusal.
-void SessionRun::finish_trace()
-{
-    if (parts_.trace == nullptr)
-    {
-        return;
-    }
-    const auto trace = parts_.trace->finish();
-    if (!trace)
-    {
-        done_.trace_error = trace.error().text;
-        log_error("--trace: " + *done_.trace_error);
-        return;
-    }
-    done_.trace = trace.value();
 }
 
 /// Copies the results of the topics into done_. The threads that use them must have ended.

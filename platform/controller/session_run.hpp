@@ -4,7 +4,6 @@
 
 #include "platform/choices/messages.hpp"
 #include "platform/controller/finished_run.hpp"
-#include "platform/controller/program_edits.hpp"
 #include "platform/controller/run_hooks.hpp"
 #include "platform/controller/transport_thread.hpp"
 #include "platform/loop/assertion_brake.hpp"
@@ -107,8 +106,6 @@ private:
     void report_guardian();
     void end_after_failure();
     [[nodiscard]] std::string keep_failed_frame();
-    void finish_recording();
-    void finish_trace();
     void note_topics();
 
     RunParts parts_;

@@ -9,7 +9,6 @@
 #include "transport/base/atomic_file.hpp"
 #include "transport/base/refusal.hpp"
 
-#include <cstdint>
 #include <optional>
 #include <string>
 

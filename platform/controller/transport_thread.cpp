@@ -6,7 +6,6 @@
 #include "platform/machine/posix/posix_clock.hpp"
 #include "platform/scene/program_scene.hpp"
 #include "transport/chunk_loader.hpp"
-#include "transport/served_model.hpp"
 
 #include <chrono>
 #include <cstddef>

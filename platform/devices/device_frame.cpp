@@ -3,7 +3,6 @@
 #include "platform/devices/device_frame.hpp"
 
 #include "rt_core/limits.hpp"
-#include "rt_core/math/rotation.hpp"
 
 #include <cmath>
 

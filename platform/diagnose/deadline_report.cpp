@@ -4,7 +4,7 @@
 
 #include "platform/plot/page.hpp"
 #include "platform/report/latency_chart.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

@@ -6,13 +6,12 @@
 #include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/devices/wrapped_device.hpp"
-#include "platform/diagnose/frame_repeater.hpp"
 #include "platform/machine/allocation_counter.hpp"
 #include "platform/machine/thread_usage.hpp"
-#include "platform/options/program_hooks.hpp"
+#include "platform/options/options.hpp"
 #include "platform/program/run_program.hpp"
-#include "platform/program/stop_signals.hpp"
-#include "transport/base/counted.hpp"
+#include "platform/recording/replay.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 
@@ -21,10 +20,46 @@
 #include <ctime>
 #include <map>
 #include <memory>
+#include <set>
 #include <sys/mman.h>
 
 namespace tactus::hrtc
 {
+
+Result<std::vector<std::uint64_t>, std::string>
+frames_over_again(const Recording& recording, std::span<const std::uint64_t> suspects,
+                  Duration limit)
+{
+    std::set<std::uint64_t> over(suspects.begin(), suspects.end());
+    Duration before;
+    const ReplayWatch watch{
+        [&before](std::uint64_t) { before = read_thread_cpu_time(); },
+        [&](std::uint64_t frame, const RecordedFrame& /*unused*/, const FrameOutput& /*unused*/)
+        {
+            if (read_thread_cpu_time() - before <= limit)
+            {
+                over.erase(frame);
+            }
+        }};
+    for (int i = 0; i < kRepetitions && !over.empty(); ++i)
+    {
+        const auto replayed = replay(recording, nullptr, watch);
+        if (!replayed)
+        {
+            return replayed.error().text;
+        }
+        if (replayed.value().difference)
+        {
+            return replay_line(recording, replayed.value());
+        }
+        if (suspects.back() >= replayed.value().frames)
+        {
+            return fmt::format("frame {} is not in the recording of {} frames", suspects.back(),
+                               replayed.value().frames);
+        }
+    }
+    return std::vector<std::uint64_t>(over.begin(), over.end());
+}
 
 namespace
 {

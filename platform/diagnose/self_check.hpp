@@ -5,12 +5,17 @@
 #include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
 #include "platform/loop/deadline_account.hpp"
+#include "platform/machine/time.hpp"
+#include "platform/recording/recording.hpp"
+#include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace tactus::hrtc
 {
@@ -77,5 +82,16 @@ struct SelfCheck
 [[nodiscard]] Result<SelfCheck, Refusal> run_self_check(Options options);
 
 [[nodiscard]] std::string self_check_line(const SelfCheck& check);
+
+/// Most repetitions of a suspected frame. Work that takes too long does so each time. A delay by
+/// the machine does not occur each time, and never shortens the work.
+inline constexpr int kRepetitions = 5;
+
+/// Replays a run. Returns those of the frames `suspects` (ascending) that took more than `limit` of
+/// processor time in each of kRepetitions. Refused if the recording can't be replayed, if a replay
+/// differs, or if a suspect is missing in the recording.
+[[nodiscard]] Result<std::vector<std::uint64_t>, std::string>
+frames_over_again(const Recording& recording, std::span<const std::uint64_t> suspects,
+                  Duration limit);
 
 } // namespace tactus::hrtc

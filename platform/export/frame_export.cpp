@@ -34,30 +34,20 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 16U;
 void tell_setup(JsonSink& sink, const RecordedSetup& setup)
 {
     tell_run(sink, setup);
-    sink.open_list("tools");
-    for (const ToolSpec& tool : setup.tools)
+    const auto list = [&sink](const char* name, std::size_t count, const auto& tell_item)
     {
-        sink.open_item();
-        tell_tool_spec(sink, tool);
-        sink.close();
-    }
-    sink.close_list();
-    sink.open_list("objects");
-    for (std::size_t i = 0; i < setup.objects.size(); ++i)
-    {
-        sink.open_item();
-        tell_object(sink, setup, i);
-        sink.close();
-    }
-    sink.close_list();
-    sink.open_list("models");
-    for (std::size_t i = 0; i < setup.models.size(); ++i)
-    {
-        sink.open_item();
-        tell_model_spec(sink, setup, i);
-        sink.close();
-    }
-    sink.close_list();
+        sink.open_list(name);
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            sink.open_item();
+            tell_item(i);
+            sink.close();
+        }
+        sink.close_list();
+    };
+    list("tools", setup.tools.size(), [&](std::size_t i) { tell_tool_spec(sink, setup.tools[i]); });
+    list("objects", setup.objects.size(), [&](std::size_t i) { tell_object(sink, setup, i); });
+    list("models", setup.models.size(), [&](std::size_t i) { tell_model_spec(sink, setup, i); });
 }
 
 /// A file and its buffered text.

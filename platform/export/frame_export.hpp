@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/export/frame_fields.hpp"
+#include "platform/export/field_sink.hpp"
 #include "platform/recording/recording_format.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/export/frame_fields.hpp"
-
+#include "platform/export/field_sink.hpp"
 #include "rt_core/records/prediction.hpp"
 
 #include <array>

@@ -10,7 +10,6 @@
 #include <limits>
 #include <span>
 #include <type_traits>
-#include <utility>
 
 namespace tactus
 {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/hrtc/replay_file.hpp"
-
 #include "platform/export/frame_export.hpp"
+#include "platform/hrtc/subcommands.hpp"
 #include "platform/program/command_line.hpp"
 #include "platform/program/run_program.hpp"
 #include "platform/recording/recording.hpp"

@@ -14,7 +14,6 @@
 #include "platform/machine/allocation_counter.hpp"
 #include "platform/machine/clock.hpp"
 #include "platform/machine/periodic_timer.hpp"
-#include "platform/machine/process_stop.hpp"
 #include "platform/machine/system_call_trap.hpp"
 #include "platform/recording/frame_tap.hpp"
 #include "platform/recording/last_inputs.hpp"

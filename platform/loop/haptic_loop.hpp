@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/loop/cycle_measures.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/loop/safety_log.hpp"
 #include "platform/loop/tool_port.hpp"

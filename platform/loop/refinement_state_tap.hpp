@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/loop/cycle_measures.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/machine/time.hpp"
 #include "rt_core/base/static_vector.hpp"

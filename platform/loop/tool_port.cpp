@@ -6,9 +6,6 @@
 #include "rt_core/force/angular_stiffness.hpp"
 #include "rt_core/limits.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace tactus::hrtc
 {
 

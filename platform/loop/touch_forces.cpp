@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/loop/touch_forces.hpp"
-
+#include "platform/loop/telemetry_tap.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/static_vector.hpp"
-#include "rt_core/limits.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace tactus::hrtc

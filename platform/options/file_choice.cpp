@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/options/file_choice.hpp"
-
-#include "transport/base/files_near.hpp"
+#include "platform/options/option_table.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/read_file.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <fmt/format.h>
 #include <sodium.h>

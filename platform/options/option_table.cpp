@@ -3,11 +3,8 @@
 #include "platform/options/option_table.hpp"
 
 #include "platform/choices/option_ranges.hpp"
-#include "platform/options/tool_options.hpp"
-#include "platform/program/command_line.hpp"
 #include "rt_core/limits.hpp"
 
-#include <array>
 #include <utility>
 
 namespace tactus::hrtc

@@ -3,14 +3,14 @@
 #include "platform/options/options.hpp"
 
 #include "platform/export/frame_export.hpp"
-#include "platform/options/file_choice.hpp"
 #include "platform/options/option_table.hpp"
-#include "platform/options/tool_options.hpp"
 #include "platform/program/command_line.hpp"
+#include "platform/program/progress.hpp"
+#include "platform/program/run_program.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/kernels/kernels.hpp"
 #include "rt_core/limits.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/base/refusal.hpp"
@@ -20,9 +20,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <span>
 #include <sstream>
-#include <string>
 #include <string_view>
 
 namespace tactus::hrtc
@@ -600,6 +600,18 @@ std::variant<Options, int> parse_options(int argc, char** argv, const CommandFor
         return std::fflush(stdout) == 0 ? kExitDone : line.fail("the options can't be written");
     }
     return options;
+}
+
+RunHooks program_hooks()
+{
+    return {.is_stopped = is_stop_requested,
+            .begin_progress = [](const std::string& what) -> FramesDone
+            {
+                auto progress = std::make_shared<Progress>("hrtc", what, "frames");
+                return [progress](std::uint64_t done, std::uint64_t all)
+                { progress->update(done, all); };
+            },
+            .notifies_manager = true};
 }
 
 } // namespace tactus::hrtc

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "platform/choices/run_options.hpp"
+#include "platform/controller/run_hooks.hpp"
 
 #include <functional>
 #include <string>
@@ -40,5 +41,8 @@ struct CommandForm
 /// --version or wrong usage. Wrong usage gets one line on stderr.
 [[nodiscard]] std::variant<Options, int> parse_options(int argc, char** argv,
                                                        const CommandForm& form);
+
+/// Hooks of hrtc: a signal ends a session, and the progress appears on stderr.
+[[nodiscard]] RunHooks program_hooks();
 
 } // namespace tactus::hrtc

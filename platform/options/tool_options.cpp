@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/options/tool_options.hpp"
-
-#include "platform/choices/tool_words.hpp"
+#include "platform/choices/tool_choice.hpp"
+#include "platform/options/option_table.hpp"
 #include "rt_core/limits.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 namespace tactus::hrtc
 {

@@ -12,4 +12,7 @@ namespace tactus::plot
 /// XML, control characters and broken UTF-8 become U+FFFD.
 [[nodiscard]] std::string escaped(std::string_view text);
 
+/// Script that draws a page's charts with the chart library: platform/plot/charts.js.
+[[nodiscard]] std::string_view charts_script() noexcept;
+
 } // namespace tactus::plot

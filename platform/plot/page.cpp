@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/plot/page.hpp"
 
-#include "platform/plot/charts_script.hpp"
 #include "platform/plot/markup.hpp"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/program/command_line.hpp"
 
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/program_log.hpp"
 #include "transport/base/read_file.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,11 +14,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 namespace tactus
 {
@@ -527,7 +525,8 @@ void CommandLine::choose_log_style()
     set_log_style({static_cast<LogLevel>(level), logs_json_});
 }
 
-std::optional<int> CommandLine::parse(int argc, char** argv)
+std::optional<int> CommandLine::parse(int argc, char** argv,
+                                      const std::function<std::string()>& find_fault)
 {
     words_.assign(argv + std::min(argc, 1), argv + argc);
     // Sets the log style early, for faults of the other options.
@@ -543,6 +542,7 @@ std::optional<int> CommandLine::parse(int argc, char** argv)
         choose_log_style();
         std::string fault = tables_ == nullptr ? "" : place_tables();
         fault = fault.empty() ? fault_of_security() : fault;
+        fault = fault.empty() && find_fault ? find_fault() : fault;
         return fault.empty() ? std::nullopt : std::optional(fail(fault, kExitUsage));
     }
     catch (const CLI::ConfigError& error)

@@ -108,8 +108,10 @@ public:
 
     /// Parses the line. Returns the exit code after --help, --version, wrong usage or an unreadable
     /// option file. Both faults get one line on stderr. Returns nothing if the program should
-    /// continue.
-    [[nodiscard]] std::optional<int> parse(int argc, char** argv);
+    /// continue. `find_fault` checks the values of a valid line together: its text is wrong usage,
+    /// and an empty one is none.
+    [[nodiscard]] std::optional<int> parse(int argc, char** argv,
+                                           const std::function<std::string()>& find_fault = {});
 
     /// Names of the given options, in the order of declaration.
     [[nodiscard]] std::vector<std::string> given() const;

@@ -21,6 +21,15 @@ namespace tactus
 /// lost and the program goes on.
 void print_out(std::string_view text) noexcept;
 
+/// Lets SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGALRM and the two user signals request the
+/// program's end, instead of ending it. SIGPIPE and SIGXFSZ are ignored: the write that caused them
+/// fails. If SIGHUP is ignored, as by nohup, it stays ignored. Any thread.
+void stop_on_signals() noexcept;
+
+/// True if a signal has requested the end since the program began. Any thread, and any signal
+/// handler.
+[[nodiscard]] bool is_stop_requested() noexcept;
+
 } // namespace tactus
 
 namespace tactus::hrtc

@@ -5,7 +5,7 @@
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/scene/placed_models.hpp"
 #include "host_tools/scene/scene.hpp"
-#include "platform/scene/object_pose.hpp"
+#include "platform/scene/scene_parts.hpp"
 
 #include <utility>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/recording/change_coding.hpp"
+#include "platform/recording/setup_coding.hpp"
 
 #include <array>
 #include <cstdint>

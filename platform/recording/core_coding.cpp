@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/recording/core_coding.hpp"
-
 #include "platform/recording/fixed_writer.hpp"
+#include "platform/recording/recording_format.hpp"
 
 #include <cmath>
 #include <cstdint>

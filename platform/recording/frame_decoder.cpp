@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/recording/frame_decoder.hpp"
 
-#include "platform/recording/change_coding.hpp"
 #include "platform/recording/frame_encoder.hpp"
+#include "platform/recording/setup_coding.hpp"
 
 #include <algorithm>
 #include <cmath>

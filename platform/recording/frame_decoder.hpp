@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/output_hash.hpp"
+#include "platform/recording/recording_format.hpp"
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/records/device_record.hpp"
 #include "rt_core/records/frame_input.hpp"

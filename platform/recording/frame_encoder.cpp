@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/recording/frame_encoder.hpp"
 
-#include "platform/recording/change_coding.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/change_coding.hpp"
 #include "platform/recording/fixed_writer.hpp"
-#include "platform/recording/output_hash.hpp"
+#include "platform/recording/recording_format.hpp"
+#include "platform/recording/setup_coding.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
 #include "rt_core/records/frame_output.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/recording/output_hash.hpp"
+#include "platform/recording/recording_format.hpp"
 
 #include <bit>
 

@@ -2,11 +2,13 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "platform/recording/core_coding.hpp"
+#include "rt_core/base/byte_io.hpp"
 #include "rt_core/frame/frame_setup.hpp"
 #include "rt_core/frame/model_capacities.hpp"
+#include "rt_core/geometry/tool_core.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/records/frame_output.hpp"
 #include "rt_core/records/object_pose.hpp"
 #include "rt_core/records/prediction.hpp"
 
@@ -16,12 +18,17 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 // Any thread, but not the haptic one: values; their texts and bytes allocate.
 namespace tactus
 {
+
+/// Vertices of a recording's hulls; copies share them.
+using HullVertices = std::vector<std::shared_ptr<const std::vector<Vec3>>>;
 
 /// docs/recording.md describes the file.
 inline constexpr std::array<char, 8> kRecordingMagic{'T', 'A', 'C', 'T', 'R', 'E', 'C', '\n'};
@@ -113,5 +120,29 @@ inline constexpr std::uint64_t kNoFrame = std::numeric_limits<std::uint64_t>::ma
 /// Set-up of a frame of this program in a recording's form: copies all of it except the vertices of
 /// hulls.
 [[nodiscard]] RecordedSetup to_recorded(const FrameSetup& setup);
+
+/// Appends a tool's core: a byte for its kind, and its numbers (docs/recording.md). A core given
+/// only by a support function can't be coded, since the function is code (asserted).
+void append_core(std::vector<std::byte>& bytes, const ToolCore& core);
+
+/// Reads a core. None if the kind is unknown, a length is not within -1e6 to 1e6 m, or a hull has
+/// not 1 to kMaxHullVertices vertices. A hull's vertices are added to `vertices`.
+[[nodiscard]] std::optional<ToolCore> read_core(ByteReader& reader, HullVertices& vertices);
+
+/// 64-bit hashes of the parts of a FrameOutput, over all bits of every field, without padding.
+/// Frames with equal hashes have given the same values.
+struct OutputHashes
+{
+    std::uint64_t tools{0};
+    std::uint64_t pairs{0};
+    std::uint64_t models{0}; ///< Hash of pools, refined records and state hash of each model.
+    std::uint64_t work{0};   ///< Hash of work counters, scene and faults.
+
+    bool operator==(const OutputHashes&) const noexcept = default;
+};
+
+/// Hashes the output. About 60 multiplications for one tool and one object. `output.queues` is an
+/// input and left out.
+[[nodiscard]] OutputHashes hash_output(const FrameOutput& output) noexcept;
 
 } // namespace tactus

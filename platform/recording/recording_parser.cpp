@@ -5,7 +5,7 @@
 #include "rt_core/base/arena.hpp"
 #include "rt_core/base/crc32c.hpp"
 #include "rt_core/frame/model.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <algorithm>

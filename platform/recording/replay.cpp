@@ -2,11 +2,9 @@
 // Copyright the Tactus authors.
 #include "platform/recording/replay.hpp"
 
-#include "platform/recording/frame_decoder.hpp"
-#include "platform/recording/recording.hpp"
 #include "platform/recording/replay_queues.hpp"
 #include "rt_core/frame/frame.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/recording/setup_coding.hpp"
 
-#include "platform/recording/change_coding.hpp"
-#include "platform/recording/core_coding.hpp"
 #include "platform/recording/fixed_writer.hpp"
 #include "rt_core/frame/frame.hpp"
 #include "rt_core/limits.hpp"

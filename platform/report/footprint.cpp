@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/footprint.hpp"
-
+#include "platform/report/report.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/spm/base_mesh.hpp"
 #include "rt_core/spm/header.hpp"

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/report/verdict.hpp"
 #include "rt_core/limits.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 
 namespace tactus::hrtc
 {

@@ -2,8 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/report/report.hpp"
 
-#include "platform/choices/run_options.hpp"
-#include "platform/controller/controller.hpp"
 #include "platform/controller/finished_run.hpp"
 #include "platform/devices/udp/udp_device.hpp"
 #include "platform/loop/machine.hpp"
@@ -19,10 +17,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <ctime>
-#include <span>
 #include <sstream>
 
 namespace tactus::hrtc

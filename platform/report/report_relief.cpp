@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/report/report.hpp"
 #include "rt_core/spm/base_mesh.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 
 #include "platform/report/report.hpp"
 #include "platform/report/verdict.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

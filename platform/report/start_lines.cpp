@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/report/footprint.hpp"
 #include "platform/report/report.hpp"
 #include "platform/scene/material_limits.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
 #include "rt_core/frame/frame_setup.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/spm/header.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

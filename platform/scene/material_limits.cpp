@@ -4,7 +4,6 @@
 
 #include "platform/loop/tool_port.hpp"
 #include "rt_core/force/stiffness_rule.hpp"
-#include "transport/material_ranges.hpp"
 #include "transport/material_text.hpp"
 
 #include <fmt/format.h>

@@ -61,45 +61,43 @@ std::optional<ProgramScene::Key> ProgramScene::try_add(const ObjectSpec& spec,
     return Key{number, free->generation};
 }
 
-bool ProgramScene::try_move(Key object, const Similarity& place)
+/// Changes the slot of an object that the program has not removed. False if there is none.
+template <typename Change>
+bool ProgramScene::try_change(Key object, const Change& change)
 {
     const std::lock_guard lock(mutex_);
     Slot* const slot = find(object);
-    if (slot == nullptr)
+    if (slot != nullptr)
     {
-        return false;
+        change(*slot);
+        queue(object.number);
     }
-    static_cast<Similarity&>(slot->pose) = place;
-    slot->owes_pose = true;
-    queue(object.number);
-    return true;
+    return slot != nullptr;
+}
+
+bool ProgramScene::try_move(Key object, const Similarity& place)
+{
+    return try_change(object,
+                      [&](Slot& slot)
+                      {
+                          static_cast<Similarity&>(slot.pose) = place;
+                          slot.owes_pose = true;
+                      });
 }
 
 bool ProgramScene::try_set_material(Key object, const Material& material)
 {
-    const std::lock_guard lock(mutex_);
-    Slot* const slot = find(object);
-    if (slot == nullptr)
-    {
-        return false;
-    }
-    slot->spec.material = material;
-    slot->owes_material = true;
-    queue(object.number);
-    return true;
+    return try_change(object,
+                      [&](Slot& slot)
+                      {
+                          slot.spec.material = material;
+                          slot.owes_material = true;
+                      });
 }
 
 bool ProgramScene::try_remove(Key object)
 {
-    const std::lock_guard lock(mutex_);
-    Slot* const slot = find(object);
-    if (slot == nullptr)
-    {
-        return false;
-    }
-    slot->is_resident = false;
-    queue(object.number);
-    return true;
+    return try_change(object, [](Slot& slot) { slot.is_resident = false; });
 }
 
 std::optional<Similarity> ProgramScene::place_of(Key object) const

@@ -9,7 +9,6 @@
 #include "rt_core/records/material.hpp"
 
 #include <compare>
-#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <mutex>
@@ -71,6 +70,8 @@ private:
         bool is_queued{false}; ///< True if the number is in untold_.
     };
 
+    template <typename Change>
+    bool try_change(Key object, const Change& change);
     [[nodiscard]] Slot* find(Key object);
     [[nodiscard]] const Slot* find(Key object) const;
     void queue(std::uint32_t number);

@@ -5,7 +5,6 @@
 #include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
 #include "platform/machine/clock.hpp"
-#include "platform/scene/object_pose.hpp"
 #include "platform/scene/scene_parts.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/program_log.hpp"
@@ -17,12 +16,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <iterator>
-#include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
 namespace tactus::hrtc
 {

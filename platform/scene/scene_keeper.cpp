@@ -3,13 +3,11 @@
 #include "platform/scene/scene_keeper.hpp"
 
 #include "platform/scene/material_limits.hpp"
-#include "platform/scene/object_pose.hpp"
 #include "transport/content_hash.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace tactus::hrtc
 {

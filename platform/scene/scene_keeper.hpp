@@ -5,7 +5,6 @@
 #include "platform/loop/scene_mailbox.hpp"
 #include "platform/machine/time.hpp"
 #include "platform/scene/scene_choice.hpp"
-#include "platform/scene/scene_news_counts.hpp"
 #include "platform/scene/scene_parts.hpp"
 #include "transport/dds/authority.hpp"
 #include "transport/dds/scene_reader.hpp"

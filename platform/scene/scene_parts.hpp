@@ -5,6 +5,8 @@
 #include "platform/loop/tool_port.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/records/frame_input.hpp"
+#include "rt_core/spm/header.hpp"
+#include "transport/pose.hpp"
 #include "transport/served_model.hpp"
 
 #include <algorithm>
@@ -15,6 +17,18 @@
 
 namespace tactus::hrtc
 {
+
+/// Counts of the scene's changes since the start.
+struct SceneNewsCounts
+{
+    std::uint64_t came{0};  ///< Objects added to the frame.
+    std::uint64_t went{0};  ///< Objects removed from the frame.
+    std::uint64_t feels{0}; ///< Materials changed in the frame.
+    /// Times that the material of an object was limited (limited()).
+    std::uint64_t limited{0};
+    std::uint64_t passed_over{0};     ///< Objects that can't be touched: no such model, or no room.
+    std::uint64_t motion_regained{0}; ///< dds::SceneReader::motion_regained().
+};
 
 /// Parts of the controller's scene at the start. The spans are borrowed.
 struct SceneParts
@@ -51,5 +65,12 @@ struct SceneRoom
                     std::clamp<std::size_t>(pool_bytes / kPoolAPair, kLeastPairs, kMaxPairs))};
     }
 };
+
+/// Similarity of a server's pose. The quaternion must not be zero but may have any length; the
+/// rotation is orthonormal to 2e-15.
+[[nodiscard]] Similarity to_similarity(const Pose& pose);
+
+/// Pose at `place` of an object of the model with this header and its revision.
+[[nodiscard]] ObjectPose object_pose(const Similarity& place, const ModelHeader& header);
 
 } // namespace tactus::hrtc

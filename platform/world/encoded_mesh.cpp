@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/world/encoded_mesh.hpp"
-
 #include "host_tools/build/build_model.hpp"
 #include "host_tools/mesh/prepare.hpp"
 #include "host_tools/mesh/read_mesh.hpp"
 #include "platform/choices/messages.hpp"
 #include "platform/world/program_devices.hpp"
-#include "platform/world/world_words.hpp"
+#include "platform/world/world_plan.hpp"
+#include "platform/world/world_values.hpp"
 #include "transport/model_name.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +14,6 @@
 #include <exception>
 #include <system_error>
 #include <unistd.h>
-#include <utility>
 #include <vector>
 
 namespace tactus::hrtc

@@ -2,11 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/world/local_edits.hpp"
 
-#include "platform/choices/messages.hpp"
 #include "platform/choices/run_options.hpp"
 #include "platform/controller/controller.hpp"
 #include "platform/controller/cut_sender.hpp"
-#include "platform/controller/program_edits.hpp"
+#include "platform/controller/run_hooks.hpp"
 #include "rt_core/base/assert.hpp"
 #include "transport/store/model_store.hpp"
 

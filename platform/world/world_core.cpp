@@ -13,9 +13,8 @@
 #include "platform/scene/program_scene.hpp"
 #include "platform/world/program_devices.hpp"
 #include "platform/world/world_values.hpp"
-#include "platform/world/world_words.hpp"
 #include "rt_core/scene/object_table.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <fmt/format.h>
 

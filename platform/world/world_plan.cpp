@@ -5,18 +5,16 @@
 #include "platform/choices/messages.hpp"
 #include "platform/choices/option_ranges.hpp"
 #include "platform/choices/tool_choice.hpp"
-#include "platform/choices/tool_words.hpp"
-#include "platform/devices/remote/info_fault.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 #include "platform/machine/posix/posix_clock.hpp"
 #include "platform/readers/file_readers.hpp"
 #include "platform/world/world_values.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <initializer_list>
 #include <utility>
 

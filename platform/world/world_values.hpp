@@ -32,3 +32,16 @@ namespace tactus
                                                    const std::array<double, 3>& to_m);
 
 } // namespace tactus
+
+namespace tactus::hrtc
+{
+
+/// The text with the names of hrtc's options replaced by those of a World.
+[[nodiscard]] std::string world_words(std::string text);
+
+[[nodiscard]] inline Refusal in_world_words(const Refusal& refusal)
+{
+    return {world_words(refusal.text), refusal.is_usage};
+}
+
+} // namespace tactus::hrtc

@@ -4,8 +4,8 @@
 
 #include "host_tools/encode/decoded_model.hpp"
 #include "host_tools/encode/piece_coding.hpp"
-#include "platform/recording/core_coding.hpp"
 #include "platform/recording/recording.hpp"
+#include "platform/recording/recording_format.hpp"
 #include "rt_core/spm/chunk_coding.hpp"
 #include "tests/fuzz/law.hpp"
 #include "tests/fuzz/model_laws.hpp"

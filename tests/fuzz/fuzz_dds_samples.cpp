@@ -11,10 +11,10 @@
 #include "transport/dds/edit_publisher.hpp"
 #include "transport/dds/edit_reader.hpp"
 #include "transport/dds/piece_frame.hpp"
-#include "transport/dds/placement.hpp"
 #include "transport/dds/scene_reader.hpp"
 #include "transport/dds/telemetry.hpp"
 #include "transport/dds/topics.hpp"
+#include "transport/dds/wire_values.hpp"
 
 #include <algorithm>
 #include <array>

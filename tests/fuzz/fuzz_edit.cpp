@@ -14,7 +14,7 @@
 #include "tests/fuzz/input_parts.hpp"
 #include "tests/fuzz/law.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/edit_content.hpp"
 #include "transport/edit_state.hpp"
 
 #include <algorithm>

@@ -15,7 +15,7 @@
 #include "tests/unit/transport/tiny_model.hpp"
 #include "transport/dds/piece_frame.hpp"
 #include "transport/dds/topics.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/edit_content.hpp"
 
 #include <cstddef>
 #include <cstdio>

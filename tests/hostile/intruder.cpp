@@ -10,7 +10,7 @@
 /// control, or "-" for Cyclone's. Exits with 2 if the domain can't be joined.
 
 #include "rt_core/limits.hpp"
-#include "transport/dds/security.hpp"
+#include "transport/dds/key_folder.hpp"
 #include "transport/dds/topics.hpp"
 
 #include <dds/dds.h>

@@ -6,7 +6,7 @@
 /// at the attack's place; then it repeats the attack until told to end. Prints the number of
 /// attacks. Exits 2 if it cannot serve, 3 for an unknown ATTACK.
 
-#include "platform/program/stop_signals.hpp"
+#include "platform/program/run_program.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/dds/dds_server.hpp"
 #include "transport/dds/telemetry.hpp"

@@ -13,7 +13,7 @@
 ///
 /// Exits 2 on failure, 3 for an unknown KIND.
 
-#include "platform/program/stop_signals.hpp"
+#include "platform/program/run_program.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/dds/domain.hpp"
 #include "transport/dds/model_pieces.hpp"

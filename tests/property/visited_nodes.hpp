@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
-#include "host_tools/encode/left_full_order.hpp"
+#include "host_tools/encode/model_pieces.hpp"
 #include "tests/unit/rt_core/tree_support.hpp"
 
 #include <gtest/gtest.h>

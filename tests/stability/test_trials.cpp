@@ -7,7 +7,7 @@
 /// I2: nothing drifts; splits and merges, touches and rests return to the same state.
 
 #include "host_tools/shapes/shapes.hpp"
-#include "platform/choices/placement.hpp"
+#include "platform/choices/device_choice.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/trial_length.hpp"
 #include "tests/shared/worst_shapes.hpp"

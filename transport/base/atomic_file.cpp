@@ -6,11 +6,9 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
-#include <span>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "transport/base/number_form.hpp"
 
-#include "transport/base/counted.hpp"
 #include "transport/base/printable.hpp"
 
 #include <algorithm>
@@ -11,8 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <optional>
-#include <string>
 
 namespace tactus
 {

@@ -5,6 +5,7 @@
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,5 +51,13 @@ struct NumberForm
 
 /// Finite number that the whole `text` represents; none for any other text.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
+
+/// Number and noun: "1 brake", "2 brakes". If `many` is empty, the plural is `one` with an s.
+[[nodiscard]] inline std::string counted(std::uint64_t number, std::string_view one,
+                                         std::string_view many = {})
+{
+    const std::string plural = many.empty() ? std::string(one) + "s" : std::string(many);
+    return std::to_string(number) + " " + (number == 1 ? std::string(one) : plural);
+}
 
 } // namespace tactus

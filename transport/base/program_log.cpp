@@ -2,6 +2,8 @@
 // Copyright the Tactus authors.
 #include "transport/base/program_log.hpp"
 
+#include "rt_core/base/assert.hpp"
+#include "transport/base/print_assertions.hpp"
 #include "transport/base/printable.hpp"
 
 #include <cstdio>
@@ -81,6 +83,25 @@ void log_message(LogLevel level, std::string_view program, std::string_view text
         const std::string line =
             log_text(style_of_all, level, program, text, std::chrono::system_clock::now()) + '\n';
         std::fputs(line.c_str(), stderr);
+    }
+}
+
+namespace
+{
+
+void print_assertion(const char* condition, const char* file, int line) noexcept
+{
+    static_cast<void>(
+        std::fprintf(stderr, "assertion failed: %s (%s:%d)\n", condition, file, line));
+}
+
+} // namespace
+
+void print_failed_assertions() noexcept
+{
+    if (const AssertHandler before = set_assert_handler(print_assertion); before != nullptr)
+    {
+        set_assert_handler(before);
     }
 }
 

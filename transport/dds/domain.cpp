@@ -2,10 +2,10 @@
 // Copyright the Tactus authors.
 #include "transport/dds/domain.hpp"
 
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/program_log.hpp"
-#include "transport/dds/security.hpp"
+#include "transport/dds/key_folder.hpp"
 #include "transport/log.hpp"
 
 #include <dds/dds.h>
@@ -27,10 +27,7 @@
 #include <map>
 #include <mutex>
 #include <netinet/in.h>
-#include <optional>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <sys/socket.h>
 #include <system_error>
 #include <vector>

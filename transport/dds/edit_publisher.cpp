@@ -3,9 +3,8 @@
 #include "transport/dds/edit_publisher.hpp"
 
 #include "rt_core/base/assert.hpp"
-#include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/dds/wire_values.hpp"
 
 #include <dds/dds.h>
 #include <fmt/format.h>

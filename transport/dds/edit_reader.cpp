@@ -4,9 +4,9 @@
 
 #include "rt_core/base/assert.hpp"
 #include "transport/dds/edit_publisher.hpp"
-#include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/dds/wire_values.hpp"
+#include "transport/edit_content.hpp"
 
 #include <dds/dds.h>
 #include <fmt/format.h>
@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
-#include <utility>
 
 #include "tactus.h"
 

@@ -13,14 +13,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <memory>
 #include <openssl/sha.h>
 #include <openssl/x509_vfy.h>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>

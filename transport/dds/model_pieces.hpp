@@ -5,7 +5,7 @@
 #include "rt_core/spm/content_key.hpp"
 #include "transport/base/refusal.hpp"
 #include "transport/dds/topics.hpp"
-#include "transport/piece_parts.hpp"
+#include "transport/part_intake.hpp"
 #include "transport/store/model_store.hpp"
 
 #include <cstddef>

@@ -4,7 +4,7 @@
 
 #include "transport/base/printable.hpp"
 #include "transport/content_hash.hpp"
-#include "transport/dds/placement.hpp"
+#include "transport/dds/wire_values.hpp"
 #include "transport/model_name.hpp"
 
 #include <dds/dds.h>

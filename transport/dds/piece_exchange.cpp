@@ -5,7 +5,6 @@
 #include "transport/dds/piece_frame.hpp"
 #include "transport/dds/take.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>

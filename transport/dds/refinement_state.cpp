@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/dds/refinement_state.hpp"
-
 #include "rt_core/base/assert.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/dds/take.hpp"
+#include "transport/dds/wire_values.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #include "transport/dds/scene_reader.hpp"
 
 #include "transport/content_hash.hpp"
-#include "transport/dds/placement.hpp"
 #include "transport/dds/take.hpp"
+#include "transport/dds/wire_values.hpp"
 #include "transport/model_name.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
-#include <utility>
 
 #include "tactus.h"
 

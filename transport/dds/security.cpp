@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "transport/dds/security.hpp"
-
 #include "transport/base/read_file.hpp"
+#include "transport/dds/key_folder.hpp"
 
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_xqos.h>

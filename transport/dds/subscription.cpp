@@ -2,8 +2,6 @@
 // Copyright the Tactus authors.
 #include "transport/dds/subscription.hpp"
 
-#include <utility>
-
 #include "tactus.h"
 
 namespace tactus::dds

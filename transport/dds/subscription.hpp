@@ -10,7 +10,6 @@
 #include "transport/dds/writer_lanes.hpp"
 #include "transport/log.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>

@@ -3,20 +3,17 @@
 #include "transport/dds/telemetry.hpp"
 
 #include "transport/base/printable.hpp"
-#include "transport/dds/placement.hpp"
-#include "transport/dds/refinement_state.hpp"
 #include "transport/dds/take.hpp"
+#include "transport/dds/wire_values.hpp"
 #include "transport/model_name.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "tactus.h"
 

@@ -4,7 +4,7 @@
 
 #include "rt_core/limits.hpp"
 #include "transport/content_hash.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/edit_content.hpp"
 #include "transport/refinement_state.hpp"
 #include "transport/telemetry.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "transport/base/refusal.hpp"
-#include "transport/dds/backoff.hpp"
+#include "transport/dds/handshake_watch.hpp"
 #include "transport/dds/topics.hpp"
 
 #include <cstddef>

@@ -4,7 +4,7 @@
 
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/spm/base_mesh.hpp"
-#include "transport/base/files_near.hpp"
+#include "transport/base/suggestions.hpp"
 #include "transport/content_hash.hpp"
 #include "transport/served_model.hpp"
 

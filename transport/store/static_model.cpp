@@ -7,14 +7,13 @@
 #include "rt_core/query/contact_report.hpp"
 #include "rt_core/query/probe.hpp"
 #include "rt_core/query/surface_query.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/chunk_loader.hpp"
 #include "transport/store/store_link.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <limits>
 #include <new>

@@ -2,10 +2,9 @@
 // Copyright the Tactus authors.
 #include "transport/store/store_link.hpp"
 
-#include "transport/piece_parts.hpp"
+#include "transport/part_intake.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace tactus
 {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/mesh/detail/read_input.hpp"
-
+#include "host_tools/mesh/detail/readers.hpp"
 #include "transport/base/read_file.hpp"
 
 #include <cerrno>

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/mesh/detail/readers.hpp"
 #include "host_tools/mesh/detail/text_cursor.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/refusal.hpp"
 
 #include <fmt/format.h>

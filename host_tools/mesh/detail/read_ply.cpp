@@ -13,7 +13,6 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <type_traits>
 
 /// PLY: the header lists the elements and their properties; "vertex", "face" and "tristrips" are
 /// read, all others skipped. A value of any type is read as a double, which represents each of them

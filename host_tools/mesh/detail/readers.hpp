@@ -4,10 +4,14 @@
 
 #include "host_tools/mesh/read_mesh.hpp"
 #include "host_tools/mesh/triangle_mesh.hpp"
+#include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,5 +57,25 @@ private:
 
 /// Adds a note if a text format does not end in a line end: its last number may have lost digits.
 void note_missing_line_end(std::string_view text, std::vector<std::string>& notes);
+
+/// A triangle of corners of a polygon, as indices of these corners in the polygon.
+using CornerTriangle = std::array<std::uint32_t, 3>;
+
+/// Cuts a polygon with n >= 4 corners in space into n - 2 triangles of its orientation in its
+/// best-fit plane. If a fan from the first corner covers the polygon, it is used; otherwise ears
+/// are cut. Collinear and coincident corners and bridges to holes are handled: parts without area
+/// become triangles without area, so that each corner stays in the mesh. None if the polygon
+/// crosses itself or has no area. Takes on the order of n^2 steps.
+[[nodiscard]] std::optional<std::vector<CornerTriangle>>
+cut_polygon(std::span<const std::array<double, 3>> corners);
+
+/// Name of standard input on a command line.
+inline constexpr const char* kStandardInput = "-";
+
+/// Reads a file like read_file(), or a pipe, a device or standard input (by its name) to its end.
+[[nodiscard]] Result<std::string, Refusal> read_input(const std::filesystem::path& path);
+
+/// Name of an input for messages.
+[[nodiscard]] std::string input_name(const std::filesystem::path& path);
 
 } // namespace tactus::detail

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/scene/detail/gltf_extensions.hpp"
-
+#include "host_tools/scene/detail/gltf_file.hpp"
 #include "transport/base/printable.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <utility>
 
 namespace tactus::detail
 {

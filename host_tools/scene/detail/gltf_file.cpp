@@ -2,8 +2,7 @@
 // Copyright the Tactus authors.
 #include "host_tools/scene/detail/gltf_file.hpp"
 
-#include "host_tools/scene/detail/gltf_extensions.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/read_file.hpp"
 

@@ -4,7 +4,7 @@
 #include "host_tools/scene/detail/gltf_accessor.hpp"
 #include "host_tools/scene/detail/gltf_nodes.hpp"
 #include "rt_core/math/vec3.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

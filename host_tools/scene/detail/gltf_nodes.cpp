@@ -3,11 +3,9 @@
 #include "host_tools/scene/detail/gltf_nodes.hpp"
 
 #include "host_tools/scene/detail/gltf_accessor.hpp"
-#include "host_tools/scene/unique_names.hpp"
 #include "rt_core/limits.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "transport/base/printable.hpp"
-#include "transport/material_ranges.hpp"
 #include "transport/material_text.hpp"
 #include "transport/model_name.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host_tools/scene/detail/gltf_file.hpp"
-#include "host_tools/scene/left_out.hpp"
+#include "host_tools/scene/scene_names.hpp"
 #include "host_tools/scene/scene_object.hpp"
 
 #include <cstddef>

@@ -5,7 +5,6 @@
 #include "host_tools/mesh/triangle_mesh.hpp"
 
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 

@@ -34,7 +34,7 @@ export function read_cut(buffer) {
   };
 }
 
-/// Decodes the answer of /boxes, /loaded or /requested (host_tools/spm_view/boxes.hpp) to line
+/// Decodes the answer of /boxes, /loaded or /requested (host_tools/spm_view/cut.hpp) to line
 /// ends.
 export function read_boxes(buffer) {
   const count = new Uint32Array(buffer, 0, 1)[0];

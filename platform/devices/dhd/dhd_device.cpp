@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/devices/dhd/dhd_device.hpp"
 
-#include "platform/devices/remote/info_fault.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 #include "rt_core/limits.hpp"
 #include "transport/base/printable.hpp"
 

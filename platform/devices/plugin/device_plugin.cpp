@@ -2,11 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/devices/plugin/device_plugin.hpp"
 
-#include "platform/devices/remote/info_fault.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 
 #include <dlfcn.h>
 #include <exception>
-#include <utility>
 
 namespace tactus
 {

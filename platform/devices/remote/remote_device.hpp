@@ -5,14 +5,13 @@
 #include "platform/devices/brake_latch.hpp"
 #include "platform/devices/device_frame.hpp"
 #include "platform/devices/haptic_device.hpp"
-#include "platform/devices/remote/remote_times.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 #include "platform/machine/clock.hpp"
 #include "rt_core/base/mailbox.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <optional>
-#include <string>
 
 namespace tactus
 {

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/contact_slide.hpp"
 
-#include "platform/devices/simulated/directions.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 #include "rt_core/base/assert.hpp"
 
 #include <algorithm>

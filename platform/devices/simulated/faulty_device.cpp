@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/faulty_device.hpp"
 
-#include "platform/devices/simulated/seeded_noise.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 
 #include <cmath>
 #include <limits>

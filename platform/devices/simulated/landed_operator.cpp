@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/landed_operator.hpp"
 
-#include "platform/devices/simulated/directions.hpp"
 #include "platform/devices/simulated/landing_sites.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 
 #include <algorithm>
 #include <cmath>

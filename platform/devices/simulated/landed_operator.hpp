@@ -3,9 +3,9 @@
 #pragma once
 
 #include "platform/devices/simulated/contact_slide.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 #include "platform/devices/simulated/operator_motion.hpp"
 #include "platform/devices/simulated/operator_pace.hpp"
-#include "platform/devices/simulated/phasor.hpp"
 #include "platform/devices/simulated/scripted_operator.hpp"
 
 #include <cstdint>

@@ -2,11 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/landing_sites.hpp"
 
-#include "platform/devices/simulated/directions.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 
 namespace tactus
 {

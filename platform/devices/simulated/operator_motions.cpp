@@ -2,12 +2,10 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/operator_motions.hpp"
 
-#include "platform/devices/simulated/directions.hpp"
 #include "platform/devices/simulated/landed_operator.hpp"
 #include "platform/devices/simulated/landing_sites.hpp"
-#include "platform/devices/simulated/phasor.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 #include "platform/devices/simulated/rotating_operators.hpp"
-#include "platform/devices/simulated/seeded_noise.hpp"
 
 #include <algorithm>
 #include <array>

@@ -11,8 +11,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <string_view>
 
 namespace tactus
 {

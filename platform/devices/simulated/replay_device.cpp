@@ -6,7 +6,6 @@
 #include "rt_core/math/value_range.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace tactus

@@ -6,7 +6,6 @@
 #include "platform/devices/simulated/operator_pace.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace tactus

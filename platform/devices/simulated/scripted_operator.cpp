@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/devices/simulated/scripted_operator.hpp"
 
-#include "platform/devices/simulated/directions.hpp"
+#include "platform/devices/simulated/motion_maths.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,6 @@
 #include "platform/devices/simulated/landing_sites.hpp"
 #include "platform/devices/simulated/operator_motion.hpp"
 #include "platform/devices/simulated/operator_pace.hpp"
-#include "platform/devices/simulated/operator_schedule.hpp"
 #include "platform/machine/time.hpp"
 #include "rt_core/base/result.hpp"
 #include "transport/base/refusal.hpp"

@@ -70,8 +70,22 @@ public:
 
 private:
     [[nodiscard]] MonotonicTime now() noexcept override { return clock_.now(); }
-    void sleep_until(MonotonicTime wake) noexcept override;
-    [[nodiscard]] MonotonicTime spin_until(MonotonicTime deadline) noexcept override;
+    void sleep_until(MonotonicTime wake) noexcept override
+    {
+        clock_.advance_to(wake);
+        if (script_at_ < script_.size() && script_[script_at_].sleep == sleeps_)
+        {
+            clock_.advance(script_[script_at_].lateness);
+            ++script_at_;
+        }
+        ++sleeps_;
+        meanwhile_();
+    }
+    [[nodiscard]] MonotonicTime spin_until(MonotonicTime deadline) noexcept override
+    {
+        clock_.advance_to(deadline);
+        return clock_.now();
+    }
 
     SimulatedClock& clock_;
     std::span<const LateWake> script_;

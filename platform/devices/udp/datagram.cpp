@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "platform/devices/udp/datagram.hpp"
 
-#include "platform/devices/remote/info_fault.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 #include "rt_core/base/assert.hpp"
 #include "rt_core/base/byte_io.hpp"
 #include "rt_core/base/crc32c.hpp"

@@ -4,7 +4,7 @@
 
 #include "platform/devices/device_force.hpp"
 #include "platform/machine/posix/linux_extras.hpp"
-#include "transport/base/counted.hpp"
+#include "transport/base/number_form.hpp"
 
 #include <algorithm>
 #include <utility>

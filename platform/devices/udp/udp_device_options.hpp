@@ -3,7 +3,7 @@
 #pragma once
 
 #include "platform/devices/device_frame.hpp"
-#include "platform/devices/remote/remote_times.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 #include "platform/machine/rt_thread.hpp"
 #include "platform/machine/time.hpp"
 

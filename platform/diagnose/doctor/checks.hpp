@@ -3,7 +3,6 @@
 #pragma once
 
 #include "platform/diagnose/doctor/machine_view.hpp"
-#include "platform/diagnose/doctor/system_files.hpp"
 
 #include <cstdint>
 #include <string>

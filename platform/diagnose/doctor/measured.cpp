@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/doctor/measured.hpp"
-
+#include "platform/diagnose/doctor/machine_view.hpp"
 #include "platform/machine/float_control.hpp"
 #include "platform/machine/posix/memory_lock.hpp"
 #include "platform/machine/posix/posix_error.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/doctor/system_files.hpp"
+#include "platform/diagnose/doctor/machine_view.hpp"
 
 #include <algorithm>
 #include <fstream>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/diagnose/doctor/system_text.hpp"
-
+#include "platform/diagnose/doctor/machine_view.hpp"
 #include "transport/base/printable.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Copyright the Tactus authors.
 #include "tests/shared/temporary_folder.hpp"
 #include "transport/base/atomic_file.hpp"
-#include "transport/base/files_near.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "rt_core/base/assert.hpp"
-#include "transport/base/nearest_word.hpp"
 #include "transport/base/number_form.hpp"
 #include "transport/base/print_assertions.hpp"
 #include "transport/base/printable.hpp"
 #include "transport/base/program_log.hpp"
+#include "transport/base/suggestions.hpp"
 
 #include <gtest/gtest.h>
 

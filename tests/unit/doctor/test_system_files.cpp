@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/diagnose/doctor/checks.hpp"
-#include "platform/diagnose/doctor/measured.hpp"
-#include "platform/diagnose/doctor/system_text.hpp"
+#include "platform/diagnose/doctor/machine_view.hpp"
 #include "tests/unit/doctor/made_up_machine.hpp"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/build/memory_need.hpp"
+#include "host_tools/build/build_model.hpp"
 #include "host_tools/shapes/shapes.hpp"
 #include "host_tools/spm_build/placing.hpp"
-#include "host_tools/spm_build/size_notes.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

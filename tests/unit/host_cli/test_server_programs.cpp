@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/keys/options.hpp"
+#include "host_tools/keys/site.hpp"
 #include "host_tools/spm_build/options.hpp"
 #include "host_tools/spm_inspect/options.hpp"
 #include "host_tools/spm_publish/options.hpp"
 #include "host_tools/spm_view/options.hpp"
 #include "platform/program/run_program.hpp"
-#include "platform/program/stop_signals.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/unit/host_cli/command_lines.hpp"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/edit/convex_hull.hpp"
-#include "host_tools/edit/loop_triangles.hpp"
-#include "host_tools/edit/merge_pieces.hpp"
+#include "host_tools/edit/exact_shapes.hpp"
+#include "host_tools/edit/surface_faces.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/unit/host_edit/edited_surface.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/encode/face_history.hpp"
-#include "host_tools/encode/left_full_order.hpp"
+#include "host_tools/encode/model_pieces.hpp"
 #include "host_tools/encode/numbering.hpp"
 #include "tests/unit/host_encode/encoded_model.hpp"
 

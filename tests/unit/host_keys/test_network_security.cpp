@@ -3,7 +3,7 @@
 #include "host_tools/keys/site.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "transport/dds/domain.hpp"
-#include "transport/dds/security.hpp"
+#include "transport/dds/key_folder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/mesh/detail/cut_polygon.hpp"
+#include "host_tools/mesh/detail/readers.hpp"
 #include "tests/unit/host_mesh/support.hpp"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #ifdef TACTUS_WITH_CGAL
-#include "host_tools/mesh/detail/cut_polygon.hpp"
+#include "host_tools/mesh/detail/readers.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_2.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/scene/detail/gltf_extensions.hpp"
+#include "host_tools/scene/detail/gltf_file.hpp"
 #include "tests/unit/host_scene/scene_files.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "host_tools/scene/placed_models.hpp"
-#include "host_tools/scene/unique_names.hpp"
+#include "host_tools/scene/scene_names.hpp"
 #include "tests/unit/host_scene/scene_files.hpp"
 #include "transport/material_text.hpp"
 #include "transport/model_name.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/spm_view/force_words.hpp"
 #include "host_tools/spm_view/live_state.hpp"
 #include "host_tools/spm_view/state_text.hpp"
 #include "tests/unit/host_view/live_rig.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "host_tools/spm_view/boxes.hpp"
 #include "host_tools/spm_view/cut.hpp"
 #include "host_tools/spm_view/film.hpp"
 #include "rt_core/abtree/ab_tree.hpp"

@@ -4,7 +4,7 @@
 #include "platform/controller/finished_run.hpp"
 #include "platform/controller/session.hpp"
 #include "platform/devices/wrapped_device.hpp"
-#include "platform/hrtc/replay_file.hpp"
+#include "platform/hrtc/subcommands.hpp"
 #include "platform/loop/assertion_brake.hpp"
 #include "platform/loop/tool_port.hpp"
 #include "platform/program/run_program.hpp"

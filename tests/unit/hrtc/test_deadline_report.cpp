@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/diagnose/deadline_report.hpp"
-#include "platform/diagnose/frame_repeater.hpp"
 #include "platform/diagnose/load.hpp"
 #include "platform/diagnose/self_check.hpp"
 #include "platform/machine/allocation_counter.hpp"

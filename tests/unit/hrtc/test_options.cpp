@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/hrtc/subcommands.hpp"
-#include "platform/options/file_choice.hpp"
+#include "platform/options/option_table.hpp"
 #include "platform/options/options.hpp"
-#include "platform/options/tool_options.hpp"
 #include "platform/readers/file_readers.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/unit/host_cli/command_lines.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/controller/trace_file.hpp"
-#include "platform/loop/safety_record.hpp"
+#include "platform/loop/safety_log.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

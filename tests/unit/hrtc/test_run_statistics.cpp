@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/controller/histogram_folder.hpp"
-#include "platform/loop/run_series.hpp"
 #include "platform/loop/run_statistics.hpp"
 #include "platform/report/report.hpp"
 #include "rt_core/frame/frame.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/choices/placement.hpp"
+#include "platform/choices/device_choice.hpp"
 #include "platform/choices/scene_materials.hpp"
 #include "platform/controller/following_operator.hpp"
-#include "platform/scene/object_pose.hpp"
+#include "platform/scene/scene_parts.hpp"
 #include "rt_core/base/arena.hpp"
 #include "tests/shared/frame_rig.hpp"
 

@@ -2,7 +2,6 @@
 // Copyright the Tactus authors.
 #include "platform/loop/refinement_state_tap.hpp"
 #include "platform/loop/telemetry_tap.hpp"
-#include "platform/loop/touch_forces.hpp"
 #include "tests/unit/hrtc/loop_rig.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
 #include "platform/machine/posix/service_notify.hpp"
-#include "platform/machine/process_stop.hpp"
+#include "platform/machine/thread_usage.hpp"
 #include "tests/shared/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

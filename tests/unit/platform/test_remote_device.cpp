@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/devices/remote/info_fault.hpp"
 #include "platform/devices/remote/remote_device.hpp"
+#include "platform/devices/remote/remote_values.hpp"
 #include "platform/devices/simulated/simulated_periodic_timer.hpp"
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 // Copyright the Tactus authors.
 #include "platform/recording/frame_tap.hpp"
 #include "platform/recording/last_inputs.hpp"
-#include "platform/recording/output_hash.hpp"
 #include "platform/recording/recording.hpp"
+#include "platform/recording/recording_format.hpp"
 #include "tests/unit/recording/recorded_example.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Copyright the Tactus authors.
-#include "platform/recording/core_coding.hpp"
 #include "platform/recording/recording.hpp"
+#include "platform/recording/recording_format.hpp"
 #include "platform/recording/replay.hpp"
 #include "rt_core/base/crc32c.hpp"
 #include "rt_core/limits.hpp"

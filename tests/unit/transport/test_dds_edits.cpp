@@ -8,7 +8,7 @@
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/dds_server.hpp"
 #include "transport/dds/edit_reader.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/edit_content.hpp"
 
 #include <dds/dds.h>
 #include <gtest/gtest.h>

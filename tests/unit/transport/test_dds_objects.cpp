@@ -7,8 +7,8 @@
 #include "transport/content_hash.hpp"
 #include "transport/dds/dds_client.hpp"
 #include "transport/dds/dds_server.hpp"
-#include "transport/dds/placement.hpp"
 #include "transport/dds/scene_reader.hpp"
+#include "transport/dds/wire_values.hpp"
 
 #include <dds/dds.h>
 #include <gtest/gtest.h>

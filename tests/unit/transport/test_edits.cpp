@@ -3,7 +3,7 @@
 #include "tests/shared/random.hpp"
 #include "tests/unit/transport/random_edits.hpp"
 #include "tests/unit/transport/tiny_model.hpp"
-#include "transport/edit_coding.hpp"
+#include "transport/edit_content.hpp"
 #include "transport/edit_state.hpp"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "host_tools/spm_publish/edited_models.hpp"
 #include "platform/choices/run_options.hpp"
 #include "platform/controller/controller.hpp"
-#include "platform/controller/program_edits.hpp"
+#include "platform/controller/run_hooks.hpp"
 #include "platform/world/local_edits.hpp"
 #include "tests/shared/temporary_folder.hpp"
 #include "tests/shared/test_model.hpp"
