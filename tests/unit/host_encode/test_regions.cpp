@@ -17,7 +17,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -42,7 +41,6 @@ struct FedModel
     /// Splits every linked record.
     void split_linked();
 
-    [[nodiscard]] std::uint32_t linked_records() const;
     /// True if the face is active in this state and no record splits it further.
     [[nodiscard]] bool is_exact(FaceId face, FaceState state) const;
 
@@ -138,16 +136,6 @@ void FedModel::split_linked()
             throw std::runtime_error("a linked record can't be split");
         }
     }
-}
-
-std::uint32_t FedModel::linked_records() const
-{
-    std::uint32_t linked = 0;
-    for (std::uint32_t slot = 0; slot < chunks_.size(); ++slot)
-    {
-        linked += static_cast<std::uint32_t>(std::popcount(model_->pages.meta(slot).linked));
-    }
-    return linked;
 }
 
 bool FedModel::is_exact(FaceId face, FaceState state) const

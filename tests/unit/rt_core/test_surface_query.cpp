@@ -412,9 +412,10 @@ struct ShortList
         NearestTriangles list(surface);
         for (std::uint32_t i = 0; i < distances_m.size(); ++i)
         {
-            LocalTriangle triangle;
-            triangle.prim = PrimId{i};
-            list.add(triangle, distances_m[i]);
+            if (LocalTriangle* const place = list.add(distances_m[i]))
+            {
+                place->prim = PrimId{i};
+            }
         }
         dropped_m = list.dropped_m();
     }
