@@ -12,6 +12,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <string>
 
 namespace tactus::test
 {
@@ -147,6 +148,7 @@ TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thr
     int open = 0;
     for (std::uint32_t pages = 1; pages <= 12; ++pages)
     {
+        SCOPED_TRACE(std::to_string(pages) + " pages");
         const NearbyTool tool = nearby_tool(model_, random_, pages % 2 == 0 ? 0.05 : 0.2);
         RigOptions options;
         options.tools = {tool.spec};
@@ -162,11 +164,12 @@ TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thr
         const std::uint64_t hash = output.models[0].state_hash;
         for (std::uint32_t frame = 0; frame < 60; ++frame)
         {
+            SCOPED_TRACE("frame " + std::to_string(frame));
             output = rig.step(tool.goal);
             ASSERT_TRUE(is_at_rest(output.work))
-                << pages << " pages, frame " << frame << ": splits " << output.work.splits
-                << ", merges " << output.work.merges << ", adopted " << output.work.pages_adopted
-                << ", requests " << output.work.requests << ", evictions " << output.work.evictions;
+                << "splits " << output.work.splits << ", merges " << output.work.merges
+                << ", adopted " << output.work.pages_adopted << ", requests "
+                << output.work.requests << ", evictions " << output.work.evictions;
             EXPECT_EQ(output.pairs[0].lower_m, settled.lower_m);
             EXPECT_EQ(output.pairs[0].upper_m, settled.upper_m);
             EXPECT_EQ(output.models[0].state_hash, hash);
@@ -175,7 +178,7 @@ TEST_P(Progress, a_cache_full_of_pinned_pages_leaves_a_stable_bracket_and_no_thr
         if (settled.kind == AnswerKind::bounded)
         {
             ++open;
-            EXPECT_TRUE(has_fault(output.faults, FrameFault::cache_full)) << pages << " pages";
+            EXPECT_TRUE(has_fault(output.faults, FrameFault::cache_full));
         }
     }
     EXPECT_GT(open, 3) << "of 12 caches";

@@ -65,6 +65,7 @@ TEST_P(StaticMode, a_model_that_fits_ends_refined_and_frames_only_query)
 
     for (int frame = 0; frame < 100; ++frame)
     {
+        SCOPED_TRACE(frame);
         const FrameOutput output = sut.step(random_place());
         const WorkCounters& work = output.work;
         EXPECT_TRUE(output.models[0].is_static);

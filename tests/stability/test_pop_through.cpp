@@ -79,6 +79,7 @@ TEST(PopThroughClosing, objects_that_leave_no_room_are_told_and_the_force_fades)
 
     for (const bool is_smooth : {false, true})
     {
+        SCOPED_TRACE(is_smooth ? "force shading" : "no force shading");
         const PopThroughFigures sut =
             run_closing_trial({model, tree, seed_of(20'261'790), 40, is_smooth});
 

@@ -72,11 +72,11 @@ TEST(DoubleDouble, keeps_a_hundred_bits)
         const DoubleDouble a = some_number(random);
         const DoubleDouble b = some_number(random);
         const double size = std::abs(a.high) + std::abs(b.high);
-        ASSERT_LE(off(wide(a + b), wide(a) + wide(b)), 0x1p-102 * size);
-        ASSERT_LE(off(wide(a - b), wide(a) - wide(b)), 0x1p-102 * size);
-        ASSERT_LE(off(wide(a * b), wide(a) * wide(b)), 0x1p-102 * std::abs(a.high * b.high));
-        ASSERT_LE(off(wide(a / b), wide(a) / wide(b)), 0x1p-100 * std::abs(a.high / b.high));
-        ASSERT_EQ(a < b, wide(a) < wide(b));
+        ASSERT_LE(off(wide(a + b), wide(a) + wide(b)), 0x1p-102 * size) << i;
+        ASSERT_LE(off(wide(a - b), wide(a) - wide(b)), 0x1p-102 * size) << i;
+        ASSERT_LE(off(wide(a * b), wide(a) * wide(b)), 0x1p-102 * std::abs(a.high * b.high)) << i;
+        ASSERT_LE(off(wide(a / b), wide(a) / wide(b)), 0x1p-100 * std::abs(a.high / b.high)) << i;
+        ASSERT_EQ(a < b, wide(a) < wide(b)) << i;
     }
 }
 
@@ -95,13 +95,13 @@ TEST(Expansion, is_exact_and_has_its_terms_in_order)
         Integer value = 0;
         for (std::size_t k = 0; k < sum.size(); ++k)
         {
-            ASSERT_NE(sum[k], 0.0);
-            ASSERT_TRUE(k == 0 || std::abs(sum[k - 1]) < std::abs(sum[k]));
+            ASSERT_NE(sum[k], 0.0) << i;
+            ASSERT_TRUE(k == 0 || std::abs(sum[k - 1]) < std::abs(sum[k])) << i;
             value += static_cast<Integer>(sum[k]);
         }
         const Integer truth = Integer{a} * b - Integer{d} * c;
         ASSERT_TRUE(value == truth) << "case " << i;
-        ASSERT_EQ(sum.sign(), sign_of(truth));
+        ASSERT_EQ(sum.sign(), sign_of(truth)) << i;
     }
 }
 

@@ -250,6 +250,7 @@ TEST(Gjk, repeats_its_bits)
     Random random(93);
     for (int i = 0; i < 2'000; ++i)
     {
+        SCOPED_TRACE(i);
         const HullScene scene =
             hull_scene(pair_classes()[random.below(kPairClasses)].make(random), random);
         const Hull hull = hull_of(scene.vertices);

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace tactus::test
 {
 namespace
@@ -168,15 +170,18 @@ TEST(PlacedCore, measures_as_the_oracle_does_and_bounds_from_below)
 
         // The oracle of a box rotates the triangle in double, accurate to 1e-15 of its place.
         const double slack = closest.distance_error + 4e-14;
-        ASSERT_NEAR(closest.distance, truth, slack) << "core " << core.index();
-        ASSERT_LE(bounds.lower, truth + 2e-14);
-        ASSERT_GE(bounds.upper, truth - 2e-14);
-        ASSERT_TRUE(closest.meet || !bounds.meet);
+        ASSERT_NEAR(closest.distance, truth, slack)
+            << "round " << round << ", core " << core.index();
+        ASSERT_LE(bounds.lower, truth + 2e-14) << "round " << round;
+        ASSERT_GE(bounds.upper, truth - 2e-14) << "round " << round;
+        ASSERT_TRUE(closest.meet || !bounds.meet) << "round " << round;
         ASSERT_GE(closest.distance + slack, (triangle[0] - sut.center()).norm() - sut.radius() -
                                                 (triangle[1] - triangle[0]).norm() -
-                                                (triangle[2] - triangle[0]).norm());
+                                                (triangle[2] - triangle[0]).norm())
+            << "round " << round;
         ASSERT_NEAR((closest.on_triangle - closest.on_shape).norm(), closest.distance,
-                    closest.distance_error + 1e-13);
+                    closest.distance_error + 1e-13)
+            << "round " << round;
         touching += closest.meet ? 1 : 0;
         loosest = std::max(loosest, truth - bounds.lower);
     }
@@ -191,6 +196,7 @@ TEST(PlacedCore, bounds_triangles_that_share_corners_and_proves_planes_between)
     int separated = 0;
     for (int round = 0; round < 5'000; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         const OwnedCore owned = random_core(random);
         const Similarity place = random_place(random);
         const PlacedCore sut(owned.core, place);
@@ -261,6 +267,7 @@ TEST(PlacedCore, is_held_by_its_sphere_and_by_its_cover)
     std::size_t most = 0;
     for (int round = 0; round < 3'000; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         const OwnedCore owned = random_core(random);
         const ToolCore& core = owned.core;
         const Similarity place = random_place(random);

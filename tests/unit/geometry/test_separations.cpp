@@ -123,6 +123,7 @@ TEST_F(SeparationsTest, no_bound_is_above_a_distance_whatever_directions_are_kno
     Random random(3'101);
     for (int trial = 0; trial < 300; ++trial)
     {
+        SCOPED_TRACE("trial " + std::to_string(trial));
         make(random, random.between(0.0, 4.0));
         Separations sut(core_);
         EXPECT_LT(see(sut), 0.0);

@@ -224,6 +224,7 @@ TEST(merge_pieces, a_wall_that_grows_stays_within_the_slack_of_all_that_was_merg
     Random random(5);
     for (const double radius : {1e9, 2'000.0, 1'000.0})
     {
+        SCOPED_TRACE(radius);
         Heights heights;
         for (int column = 0; column <= kColumns; ++column)
         {

@@ -55,6 +55,7 @@ TEST(DeviceFrame, keeps_power_over_the_scale_and_the_stiffness_cap)
     device.speed_max_m_per_s = 2.0;
     for (int i = 0; i < 1'000; ++i)
     {
+        SCOPED_TRACE(i);
         const double scale = random.between(0.01, 100.0);
         const auto made =
             DeviceFrame::create({random_rotation(random), random.in_cube(9.0), scale});

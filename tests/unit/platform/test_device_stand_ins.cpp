@@ -80,6 +80,7 @@ TEST(FaultyDevice, jitters_by_its_seed_within_the_bound)
     std::set<double> errors_m;
     for (std::size_t i = 0; i < whole.size(); ++i)
     {
+        SCOPED_TRACE(i);
         EXPECT_TRUE(is_same(one[i], two[i]));
         EXPECT_FALSE(is_same(one[i], other[i]));
         EXPECT_TRUE(one[i].valid);

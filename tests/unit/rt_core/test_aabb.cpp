@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 namespace tactus::test
@@ -60,6 +61,7 @@ TEST(Aabb, holds_exactly_the_extremes_of_its_points)
     Random random(13);
     for (int round = 0; round < 1'000; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         std::vector<Vec3f> points(1 + random.below(20));
         Aabb sut;
         Aabb first_half;

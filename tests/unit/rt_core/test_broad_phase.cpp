@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <string>
 #include <vector>
 
 namespace tactus::test
@@ -107,6 +108,7 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
     std::vector<std::uint32_t> unproven(tools);
     for (int frame = 0; frame < 300; ++frame)
     {
+        SCOPED_TRACE("frame " + std::to_string(frame));
         for (int change = 0; change < 3; ++change)
         {
             const std::uint32_t object = random.below(objects);
@@ -140,23 +142,23 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
         for (std::uint32_t i = 0; i < tools; ++i)
         {
             const auto near = crowd.near(i);
-            ASSERT_TRUE(std::ranges::is_sorted(near));
-            ASSERT_EQ(std::set(near.begin(), near.end()).size(), near.size());
-            ASSERT_LE(near.size(), kMaxNear);
+            ASSERT_TRUE(std::ranges::is_sorted(near)) << "tool " << i;
+            ASSERT_EQ(std::set(near.begin(), near.end()).size(), near.size()) << "tool " << i;
+            ASSERT_LE(near.size(), kMaxNear) << "tool " << i;
             for (const std::uint32_t object : near)
             {
-                ASSERT_TRUE(crowd.spheres.contains(object));
-                ASSERT_LE(crowd.sut.gap_m(i, object),
-                          Crowd::gap(centers[i], crowd.spheres[object]));
+                ASSERT_TRUE(crowd.spheres.contains(object)) << "tool " << i;
+                ASSERT_LE(crowd.sut.gap_m(i, object), Crowd::gap(centers[i], crowd.spheres[object]))
+                    << "tool " << i;
                 ASSERT_GE(crowd.sut.gap_m(i, object) + 1e-12 * world_m,
-                          Crowd::gap(centers[i], crowd.spheres[object]));
+                          Crowd::gap(centers[i], crowd.spheres[object]))
+                    << "tool " << i;
             }
-            ASSERT_LE(crowd.sut.clear_m(i), crowd.nearest_other(i, centers[i]))
-                << "tool " << i << ", frame " << frame;
+            ASSERT_LE(crowd.sut.clear_m(i), crowd.nearest_other(i, centers[i])) << "tool " << i;
             // A requested clearance is proven, or waits no longer than its turn.
             const bool is_full = near.size() == kMaxNear;
             unproven[i] = crowd.sut.clear_m(i) < near_m && !is_full ? unproven[i] + 1 : 0;
-            ASSERT_LE(unproven[i], (tools + kBroadWalks - 1) / kBroadWalks + 8);
+            ASSERT_LE(unproven[i], (tools + kBroadWalks - 1) / kBroadWalks + 8) << "tool " << i;
         }
     }
 }

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace tactus::test
@@ -271,6 +272,7 @@ TEST(ContactReport, contacts_are_the_faces_within_the_radius_nearest_first)
     std::size_t most = 0;
     for (int query = 0; query < 200; ++query)
     {
+        SCOPED_TRACE("query " + std::to_string(query));
         const ToolCore core = query % 4 == 0   ? ToolCore(PointCore{})
                               : query % 4 == 3 ? ToolCore(Hull::create(kWedge).value())
                               : query % 4 == 1 ? ToolCore(Segment{{-0.3, 0, 0}, {0.3, 0.1, 0}})
@@ -336,6 +338,7 @@ TEST(ContactReport, touches_are_what_measuring_every_face_finds)
     std::size_t most = 0;
     for (int query = 0; query < 300; ++query)
     {
+        SCOPED_TRACE("query " + std::to_string(query));
         const ToolCore core = query % 3 == 0   ? ToolCore(Hull::create(kWedge).value())
                               : query % 3 == 1 ? ToolCore(Segment{{-0.3, 0, 0}, {0.3, 0.1, 0}})
                                                : ToolCore(Box{{0.2, 0.1, 0.05}});
@@ -400,6 +403,7 @@ TEST(ContactReport, does_not_depend_on_the_order_of_the_tree)
     Placed second(mesh, random);
     for (int query = 0; query < 200; ++query)
     {
+        SCOPED_TRACE("query " + std::to_string(query));
         const PlacedCore core = point_at(point_near(mesh, random));
         const ContactReport a = first.report(core, 0.2, true);
         const ContactReport b = second.report(core, 0.2, true);

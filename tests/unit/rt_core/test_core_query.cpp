@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <string>
 
 namespace tactus::test
 {
@@ -172,6 +173,7 @@ TEST(CoreQuery, brackets_the_distance_and_finds_what_measuring_every_face_finds)
         QueryMemory memory;
         for (int query = 0; query < 30; ++query)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", query " + std::to_string(query));
             const PlacedCore core = random_core(random);
             const double reach = random.between(0.0, 0.4);
             const ErrorCode tolerance = round % 3 == 2 ? large_error(random, faces) : ErrorCode{0};
@@ -257,6 +259,7 @@ TEST(CoreQuery, a_spent_budget_leaves_the_bracket_true)
         const auto faces = rig.present();
         for (int query = 0; query < 20; ++query)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", query " + std::to_string(query));
             const PlacedCore core = random_core(random);
             const CoreTruth truth(faces, core, 0.3);
             QueryMemory memory{random.below(400)};
@@ -284,6 +287,7 @@ TEST(CoreQuery, ends_where_as_many_faces_as_are_enough_meet_the_core)
         fill_scattered(rig, random, 200, round % 2 == 0);
         for (int query = 0; query < 30; ++query)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", query " + std::to_string(query));
             const PlacedCore core = random_core(random);
             QueryMemory all_memory;
             const CoreAnswer all = ask(*rig.sut, core, 0.2, all_memory);
@@ -356,6 +360,7 @@ TEST_P(FlatCoreQuery, a_body_that_lies_flat_measures_few_of_the_faces_below)
     std::uint32_t most = 0;
     for (int query = 0; query < 200; ++query)
     {
+        SCOPED_TRACE("query " + std::to_string(query));
         const double height = random.between(0.01, 0.1);
         const Vec3 middle{random.between(0.5, 0.7), random.between(0.5, 0.7), 0.3 + height};
         const Mat3 turn =
@@ -413,6 +418,7 @@ TEST(CoreQuery, the_tolerance_tells_of_faces_that_were_not_measured)
     int unmeasured = 0;
     for (int query = 0; query < 300; ++query)
     {
+        SCOPED_TRACE("query " + std::to_string(query));
         // So little tilted that few of the faces below need to be measured.
         const Vec3 axis(random.between(-1.0, 1.0), random.between(-1.0, 1.0), 0.0);
         const Mat3 tilt = Eigen::AngleAxisd(random.between(0.0, 2.0) * little, axis.normalized())
@@ -439,6 +445,7 @@ TEST(CoreQuery, a_point_gets_the_answer_of_a_point)
     fill_scattered(rig, random, 200, false);
     for (int query = 0; query < 100; ++query)
     {
+        SCOPED_TRACE("query " + std::to_string(query));
         const Vec3 at = random.in_cube(1.0);
         QueryMemory memory;
         const CoreAnswer asked =

@@ -32,12 +32,13 @@ TEST(ErrorCode, encoding_never_rounds_down_and_is_the_least_code)
     {
         const double quanta = std::exp2(random.between(-20.0, 55.0));
         const ErrorCode code = encode_error(quanta);
-        ASSERT_GE(code, 1);
-        ASSERT_GE(static_cast<double>(error_in_quanta(code)), quanta);
+        ASSERT_GE(code, 1) << i;
+        ASSERT_GE(static_cast<double>(error_in_quanta(code)), quanta) << i;
         if (code > 1)
         {
             ASSERT_LT(static_cast<double>(error_in_quanta(static_cast<ErrorCode>(code - 1))),
-                      quanta);
+                      quanta)
+                << i;
         }
     }
 }

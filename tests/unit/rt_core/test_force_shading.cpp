@@ -205,6 +205,7 @@ TEST(ForceShading, are_the_derivative_of_their_energy_and_keep_within_their_boun
     int cut_off = 0;
     for (int i = 0; i < 300; ++i)
     {
+        SCOPED_TRACE(i);
         const TriangleList list = hills(random.between(0.0, 2e-4), random);
         const Vec3 center{random.between(-0.01, 0.01), random.between(-0.01, 0.01), 0.0};
         const double z = kSphere + random.between(-1e-4, 2e-4);

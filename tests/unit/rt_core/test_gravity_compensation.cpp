@@ -177,6 +177,7 @@ TEST(GravityCompensation, both_together_stay_within_the_device_by_one_gain)
     int shortened = 0;
     for (int i = 0; i < 2'000; ++i)
     {
+        SCOPED_TRACE(i);
         CarryInput input;
         const Vec3 force = random.in_cube(1.0);
         const Vec3 torque = random.in_cube(1.0);

@@ -78,14 +78,16 @@ TEST(MaterialBlend, is_sound_and_continuous_between_any_two_however_often_they_c
         ASSERT_TRUE(is_sound(felt)) << i;
         // The change is from a soft wall to the tool's own stiffness, or from a stiffer one.
         const double share = kPeriod_s / kMaterialBlend_s;
-        EXPECT_LE(std::abs(stiffness_felt(felt) - stiffness_felt(before)), 3'000.0 * 1.01 * share);
-        EXPECT_LE(std::abs(felt.static_friction - before.static_friction), 2.0 * 1.01 * share);
+        EXPECT_LE(std::abs(stiffness_felt(felt) - stiffness_felt(before)), 3'000.0 * 1.01 * share)
+            << i;
+        EXPECT_LE(std::abs(felt.static_friction - before.static_friction), 2.0 * 1.01 * share) << i;
         EXPECT_LE(std::abs(felt.viscosity_n_s_per_m - before.viscosity_n_s_per_m),
-                  20.0 * 1.01 * share);
+                  20.0 * 1.01 * share)
+            << i;
         if (felt.texture_length_m != before.texture_length_m)
         {
-            EXPECT_LE(felt.texture_height_m, 2.01 * share * kTextureSteepest * 0.1);
-            EXPECT_LE(before.texture_height_m, 2.01 * share * kTextureSteepest * 0.1);
+            EXPECT_LE(felt.texture_height_m, 2.01 * share * kTextureSteepest * 0.1) << i;
+            EXPECT_LE(before.texture_height_m, 2.01 * share * kTextureSteepest * 0.1) << i;
         }
     }
 }

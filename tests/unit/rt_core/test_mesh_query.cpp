@@ -143,6 +143,7 @@ TEST(NearFaces, are_all_above_the_tolerance_and_within_the_bound_with_their_gaps
         const auto faces = object.present();
         for (int query = 0; query < 4; ++query)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", query " + std::to_string(query));
             const MeshPlacement place = lifted_placement(random, 1.5);
             const double bound = random.between(0.0, 0.5);
             const auto tolerance = static_cast<ErrorCode>(random.one_in(2) ? random.below(60) : 0);
@@ -343,6 +344,7 @@ TEST(OtherSurface, is_no_nearer_than_all_of_its_faces_less_their_errors)
         OtherSurface sut(*object.sut, place, kAmple);
         for (int query = 0; query < 30; ++query)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", query " + std::to_string(query));
             const Vec3 point = random.in_cube(3.0);
             double truth = kInfinity;
             for (const ChangedFace& face : object.present())
@@ -516,13 +518,14 @@ TEST(MeshQuery, that_wants_one_pair_ends_with_it_and_is_else_the_same)
         const Asked all = ask(meshes.tool, meshes.object, place, reach, contact, memory);
         for (int again = 0; again < 2; ++again)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", again " + std::to_string(again));
             const Asked sut = ask_for(1, meshes.tool, meshes.object, place, reach, contact, same);
 
-            ASSERT_EQ(sut.report.intersection, truth.intersection()) << round;
-            ASSERT_EQ(sut.report.meeting.size(), truth.meeting.empty() ? 0U : 1U) << round;
+            ASSERT_EQ(sut.report.intersection, truth.intersection());
+            ASSERT_EQ(sut.report.meeting.size(), truth.meeting.empty() ? 0U : 1U);
             const Asked any = ask_meeting(meshes.tool, meshes.object, place, 1, of_meeting);
-            ASSERT_EQ(any.report.intersection, truth.intersection()) << round;
-            ASSERT_EQ(any.report.meeting.size(), truth.meeting.empty() ? 0U : 1U) << round;
+            ASSERT_EQ(any.report.intersection, truth.intersection());
+            ASSERT_EQ(any.report.meeting.size(), truth.meeting.empty() ? 0U : 1U);
             ASSERT_EQ(any.report.is_complete, truth.meeting.empty() && truth.coarse_lower > 0.0);
             ASSERT_FALSE(any.report.is_truncated);
             if (truth.meeting.empty())
@@ -535,8 +538,7 @@ TEST(MeshQuery, that_wants_one_pair_ends_with_it_and_is_else_the_same)
                 ASSERT_EQ(sut.answer.kind, all.answer.kind);
                 ASSERT_EQ(sut.report.is_complete, all.report.is_complete);
                 ASSERT_TRUE(truth.intersection() != Intersection::none ||
-                            same_contacts(sut.contacts, all.contacts))
-                    << round;
+                            same_contacts(sut.contacts, all.contacts));
                 continue;
             }
             ++met;
@@ -589,6 +591,7 @@ TEST(MeshQuery, is_the_same_with_less_work_where_coarse_faces_are_known_to_be_fa
         const auto faces = meshes.object.present();
         for (int query = 0; query < 4; ++query)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", query " + std::to_string(query));
             const MeshPlacement place = lifted_placement(random, 0.5);
             const double reach = random.between(0.0, 0.1);
             const double contact = random.one_in(2) ? -1.0 : reach;
@@ -600,7 +603,7 @@ TEST(MeshQuery, is_the_same_with_less_work_where_coarse_faces_are_known_to_be_fa
             const Asked asked = ask(meshes.tool, meshes.object, place, reach, contact, same, kAmple,
                                     std::max(0.0, truth.coarse_lower - 1e-9));
 
-            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting) << round << " " << query;
+            ASSERT_EQ(as_set(asked.report.meeting), truth.meeting);
             ASSERT_EQ(asked.report.intersection, plain.report.intersection);
             ASSERT_EQ(asked.report.is_complete, plain.report.is_complete);
             ASSERT_EQ(asked.report.nearest_tool_face, plain.report.nearest_tool_face);
@@ -637,6 +640,7 @@ TEST(NearestFaces, are_those_of_all_pairs_however_far_and_whatever_is_remembered
         MeshMemory memory{{random.below(10), random.below(10), random.below(20), 0}};
         for (int query = 0; query < 6; ++query)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", query " + std::to_string(query));
             MeshPlacement place = random_placement(random);
             if (!random.one_in(2))
             {
@@ -694,6 +698,7 @@ TEST(NearestFaces, are_bracketed_where_the_budget_ends_the_search)
         const AllPairs truth(tool.present(), object.present(), place, 0.0);
         for (std::uint32_t nodes = 1; nodes < 3'000; nodes *= 3)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", nodes " + std::to_string(nodes));
             MeshMemory memory{{random.below(10), random.below(10)}};
             const Asked asked =
                 ask_nearest(tool, object, place, memory, {nodes, random.below(10 * nodes)});
@@ -723,6 +728,7 @@ TEST(NearestFaces, are_not_told_by_faces_that_are_gone)
         MeshMemory memory;
         for (int change = 0; change < 8; ++change)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", change " + std::to_string(change));
             const AllPairs truth(tool.present(), object.present(), place, 0.0);
             const Asked asked = ask_nearest(tool, object, place, memory);
             ASSERT_EQ(asked.report.intersection, truth.intersection());
@@ -750,6 +756,7 @@ TEST(MeshQuery, faces_that_only_touch_meet)
     int met = 0;
     for (int round = 0; round < 40; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         TreeRig tool({60, 200, 200});
         TreeRig object({60, 200, 200});
         fill(tool, random, 60, true);
@@ -780,6 +787,7 @@ TEST(MeshQuery, beyond_single_precision_bounds_what_it_can)
     const auto [tool, object] = Meshes(random);
     for (const double far_m : {1e6, 1e8, 1e12})
     {
+        SCOPED_TRACE(far_m);
         MeshPlacement place = random_placement(random);
         place.place.translation_m = Vec3(far_m, -far_m, 0.0);
         const AllPairs truth(tool.present(), object.present(), place, -1.0);
@@ -826,6 +834,7 @@ TEST(MeshQuery, a_spent_budget_leaves_all_that_it_says_true)
         const AllPairs truth(tool.present(), object.present(), place, 0.05);
         for (std::uint32_t share = 1; share < 3'000; share *= 3)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", share " + std::to_string(share));
             MeshMemory memory{{random.below(10), random.below(10)}};
             MeshMemory same = memory;
             const WalkBudget budget{share, random.below(10 * share)};
@@ -889,6 +898,7 @@ TEST(MeshQuery, keeps_the_lowest_of_too_many_meeting_faces_and_contacts)
     ASSERT_EQ(asked.contacts.contacts.size(), kMaxContacts);
     for (std::uint32_t i = 0; i < kMaxContacts; ++i)
     {
+        SCOPED_TRACE(i);
         const Contact& contact = asked.contacts.contacts[i];
         EXPECT_EQ(contact.face, FaceId{0});
         EXPECT_EQ(contact.tool_face, FaceId{i});
@@ -904,6 +914,7 @@ TEST(MeshQuery, keeps_the_nearest_contacts_whatever_met_before)
     int apart = 0;
     for (int round = 0; round < 120; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         const auto [tool, object] = Meshes(random);
         const MeshPlacement place = random_placement(random);
         const double reach = random.between(0.0, 0.4);

@@ -591,8 +591,10 @@ TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
 {
     std::uint32_t left_out = 0;
     Random random(86);
+    int number = 0;
     for (const BlocksScene& scene : pairs_of_shapes(random, 12))
     {
+        SCOPED_TRACE(testing::Message() << scene.object.shape << ", scene " << number++);
         const Kernels& kernels = portable_kernels();
         const std::uint32_t tool_lane = random.below(kBlockFaces);
         const std::uint32_t lane = random.below(kBlockFaces);
@@ -618,7 +620,7 @@ TEST(PairKernels, leave_out_no_pair_of_faces_within_the_bound)
         for (const float* way : {along.data(), any.data(), static_cast<const float*>(nullptr)})
         {
             const NearPairs near = near_pairs(kernels, scene, 0xFFFF, 0xFFFF, bound, way);
-            ASSERT_NE(near[tool_lane] & mask, 0U) << scene.object.shape;
+            ASSERT_NE(near[tool_lane] & mask, 0U);
             for (const std::uint32_t lanes : near)
             {
                 left_out += static_cast<std::uint32_t>(std::popcount(0xFFFFU & ~lanes));

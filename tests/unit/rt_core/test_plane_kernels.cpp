@@ -238,12 +238,15 @@ TEST(PlaneKernels, leave_out_no_face_that_is_entered_on_the_way)
 TEST(PlaneKernels, pass_over_only_batches_that_have_no_hit)
 {
     Random random(92);
+    int number = 0;
     for (const KernelScene& scene : scenes(random, 40))
     {
+        SCOPED_TRACE(testing::Message() << scene.shape << ", scene " << number++);
         PlaneRig sut(scene);
         PlaneRig expected(scene);
         for (int i = 0; i < 8; ++i)
         {
+            SCOPED_TRACE(i);
             const auto place = random_place(random, sut);
             const long double distance = sut.distance_at(place, random.below(kFaces));
             const auto least =
@@ -255,7 +258,7 @@ TEST(PlaneKernels, pass_over_only_batches_that_have_no_hit)
             }
             const auto hits = sut.ask(portable_kernels(), place, least);
             const auto all = expected.ask(portable_kernels(), place, least, false);
-            ASSERT_EQ(hits.size(), all.size()) << scene.shape;
+            ASSERT_EQ(hits.size(), all.size());
             for (std::size_t k = 0; k < hits.size(); ++k)
             {
                 ASSERT_EQ(hits[k].batch, all[k].batch);

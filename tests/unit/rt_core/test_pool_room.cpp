@@ -71,6 +71,7 @@ TEST(PoolRoom, random_owners_always_get_what_was_promised_and_never_more_than_th
                                     sut.promise(20)};
     for (int step = 0; step < 5'000; ++step)
     {
+        SCOPED_TRACE(step);
         PoolShare& share = shares[random.below(4)];
         if (random.one_in(2) && share.used > 0)
         {

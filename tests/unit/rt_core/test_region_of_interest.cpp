@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace tactus::test
 {
@@ -67,6 +68,7 @@ TEST(RegionOfInterest, a_pair_sleeps_only_while_the_surface_is_proven_out_of_rea
         sut.remember(exact_answer(to_sphere(at)));
         for (int step = 0; step < 50; ++step)
         {
+            SCOPED_TRACE("round " + std::to_string(round) + ", step " + std::to_string(step));
             at += random.in_cube(0.1);
             look(sut, at, reach);
             if (sut.is_asleep())

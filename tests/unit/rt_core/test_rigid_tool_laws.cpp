@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace tactus::test
@@ -582,6 +583,7 @@ TYPED_TEST(RigidToolLaws, a_texture_makes_no_energy_on_closed_ways_and_turns)
     const Kind kind = TypeParam::on_bumps();
     for (std::uint64_t seed = 1; seed <= 4; ++seed)
     {
+        SCOPED_TRACE("seed " + std::to_string(seed));
         const auto work_over = [&](const Material& material, const ObjectPose& pose)
         {
             Random random(seed);
@@ -631,6 +633,7 @@ TEST(Texture, is_the_derivative_of_its_energy_and_keeps_within_its_bounds)
     Random random(2501);
     for (int i = 0; i < 2'000; ++i)
     {
+        SCOPED_TRACE(i);
         const double length_m = random.between(2e-4, 0.01);
         const Material material =
             bumpy(random.between(0.01, 1.0) * kTextureSteepest * length_m, length_m);

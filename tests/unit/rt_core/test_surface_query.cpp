@@ -17,6 +17,7 @@
 #include <memory>
 #include <numbers>
 #include <set>
+#include <string>
 #include <vector>
 
 namespace tactus::test
@@ -159,11 +160,13 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
     {
         for (const bool exact_only : {false, true})
         {
+            SCOPED_TRACE(std::string(style.name) + (exact_only ? ", exact only" : ""));
             TreeRig rig({300, 400, 400});
             fill(rig, random, style, 300, exact_only);
             const auto faces = rig.present();
             for (int i = 0; i < 150; ++i)
             {
+                SCOPED_TRACE(i);
                 const Vec3 center = random_center(random);
                 const double reach = random.between(0.0, 0.4);
                 const PointTruth truth(faces, center);
@@ -175,11 +178,9 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
                 const double proven = truth.upper > reach
                                           ? static_cast<double>(kProofShare) * truth.upper
                                           : kInfinity;
-                ASSERT_GE(answer.lower_m, std::min(truth.lower, proven) - slack)
-                    << style.name << " " << i;
+                ASSERT_GE(answer.lower_m, std::min(truth.lower, proven) - slack);
                 ASSERT_LE(answer.upper_m * (is_exact ? 1.0 : static_cast<double>(kProofShare)),
-                          truth.upper + slack)
-                    << style.name << " " << i;
+                          truth.upper + slack);
                 ASSERT_LE(answer.lower_m, truth.lower);
                 ASSERT_GE(answer.upper_m, truth.upper);
                 ASSERT_NO_FATAL_FAILURE(expect_certified(*rig.sut, *asked.surface, faces, truth));
@@ -189,7 +190,7 @@ TEST(SurfaceQuery, equals_brute_force_in_every_style)
                               truth.lower > reach ? AnswerKind::separated : AnswerKind::exact);
                     if (is_exact)
                     {
-                        ASSERT_EQ(answer.nearest_face, truth.nearest) << style.name << " " << i;
+                        ASSERT_EQ(answer.nearest_face, truth.nearest);
                         ASSERT_NEAR((answer.nearest_point_m - center).norm(), truth.upper, kSlack);
                     }
                     ASSERT_EQ(answer.certified_radius_m,
@@ -208,6 +209,7 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
     int open = 0;
     for (const FaceStyle& style : face_styles())
     {
+        SCOPED_TRACE(style.name);
         for (int tree = 0; tree < 6; ++tree)
         {
             TreeRig rig({300, 400, 400});
@@ -215,6 +217,7 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
             const auto faces = rig.present();
             for (int i = 0; i < 100; ++i)
             {
+                SCOPED_TRACE("tree " + std::to_string(tree) + ", query " + std::to_string(i));
                 const Vec3 center = random_center(random);
                 const double reach = random.between(0.0, 0.6);
                 const ErrorCode tolerance = large_error(random, faces);
@@ -226,8 +229,8 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
                 const PointAnswer asked =
                     ask(*rig.sut, center, reach, 1'000'000, 1'000'000, tolerance, room);
                 const DistanceAnswer& answer = asked.surface->answer;
-                ASSERT_LE(answer.lower_m, truth.lower + kSlack) << style.name << " " << i;
-                ASSERT_GE(answer.upper_m, truth.upper - kSlack) << style.name << " " << i;
+                ASSERT_LE(answer.lower_m, truth.lower + kSlack);
+                ASSERT_GE(answer.upper_m, truth.upper - kSlack);
                 ASSERT_LE(answer.tolerated_m, tolerance_m);
                 ASSERT_NO_FATAL_FAILURE(expect_certified(*rig.sut, *asked.surface, faces, truth));
                 const double known = std::min(truth.exact_lower, truth.tolerated_lower);
@@ -235,7 +238,7 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
                 if (!asked.surface->truncated && known > 0.0 &&
                     known < std::min(truth.coarse_lower, reach) - kFilterSlack)
                 {
-                    ASSERT_TRUE(is_known(answer.kind)) << style.name << " " << i;
+                    ASSERT_TRUE(is_known(answer.kind));
                     ASSERT_NEAR(answer.lower_m, known, kSlack);
                 }
                 if (!asked.surface->truncated && is_known(answer.kind) &&
@@ -243,7 +246,7 @@ TEST(SurfaceQuery, takes_faces_within_the_tolerance_for_the_surface)
                 {
                     ASSERT_EQ(answer.kind == AnswerKind::exact,
                               truth.exact_lower < truth.tolerated_lower);
-                    ASSERT_EQ(answer.nearest_face, truth.nearest) << style.name << " " << i;
+                    ASSERT_EQ(answer.nearest_face, truth.nearest);
                 }
                 exact += answer.kind == AnswerKind::exact ? 1 : 0;
                 tolerated += answer.kind == AnswerKind::within_tolerance ? 1 : 0;
@@ -305,11 +308,13 @@ TEST(SurfaceQuery, any_budget_leaves_a_valid_bracket)
     Random random(41);
     for (const FaceStyle& style : face_styles())
     {
+        SCOPED_TRACE(style.name);
         TreeRig rig({300, 400, 400});
         fill(rig, random, style, 300, false);
         const auto faces = rig.present();
         for (int i = 0; i < 200; ++i)
         {
+            SCOPED_TRACE(i);
             const Vec3 center = random_center(random);
             const double reach = random.between(0.0, 0.5);
             const PointTruth truth(faces, center);
@@ -318,8 +323,8 @@ TEST(SurfaceQuery, any_budget_leaves_a_valid_bracket)
             const PointAnswer asked = ask(*rig.sut, center, reach, nodes, triangles);
             ASSERT_LE(asked.budget.nodes_visited, nodes);
             ASSERT_LE(asked.budget.triangles_tested, triangles);
-            ASSERT_LE(asked.surface->answer.lower_m, truth.lower) << style.name << " " << i;
-            ASSERT_GE(asked.surface->answer.upper_m, truth.upper) << style.name << " " << i;
+            ASSERT_LE(asked.surface->answer.lower_m, truth.lower);
+            ASSERT_GE(asked.surface->answer.upper_m, truth.upper);
             ASSERT_NO_FATAL_FAILURE(expect_certified(*rig.sut, *asked.surface, faces, truth));
             if (asked.surface->answer.kind == AnswerKind::separated)
             {
@@ -337,6 +342,7 @@ TEST(SurfaceQuery, no_budget_at_all_proves_nothing)
 
     for (const auto& [nodes, triangles] : {std::pair{0U, 100U}, std::pair{100U, 0U}})
     {
+        SCOPED_TRACE(nodes);
         const PointAnswer asked = ask(*rig.sut, Vec3(0, 3, 0), 0.5, nodes, triangles);
         EXPECT_EQ(asked.surface->count, 0U);
         EXPECT_EQ(asked.surface->answer.lower_m, 0.0);
@@ -364,6 +370,7 @@ TEST(SurfaceQuery, more_triangles_than_fit_keep_the_nearest_and_shrink_the_certi
     Random random(44);
     for (int round = 0; round < 20; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         const std::uint32_t count = kMaxLocalTriangles + (round == 0 ? 1U : random.below(300));
         TreeRig rig({1'400, 1'800, 1'800});
         fill(rig, random, face_styles()[3], count, true);
@@ -431,6 +438,7 @@ TEST(NearestTriangles, are_kept_in_their_order_and_all_that_are_nearer_than_one_
     Random random(48);
     for (int round = 0; round < 500; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         const std::size_t places = random.below(40);
         std::vector<double> distances_m(random.below(200));
         for (double& distance_m : distances_m) // Many are equal.

@@ -251,11 +251,12 @@ TEST_F(VertexForestTest, every_legal_order_gives_the_same_cut_for_the_same_recor
     unsigned refined = 0;
     for (int step = 0; step < 3'000; ++step)
     {
+        SCOPED_TRACE(step);
         const std::uint32_t record = random.below(3);
         const unsigned bit = 1U << record;
         if ((refined & bit) != 0)
         {
-            ASSERT_EQ(sut_->try_merge({record}), may_merge(record, refined)) << step;
+            ASSERT_EQ(sut_->try_merge({record}), may_merge(record, refined));
             refined &= may_merge(record, refined) ? ~bit : ~0U;
         }
         else

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace tactus::test
 {
@@ -90,6 +91,7 @@ TEST(Vicinity, lists_the_triangles_of_its_surfaces)
     const Material material;
     for (int i = 0; i < 300; ++i)
     {
+        SCOPED_TRACE(i);
         const TriangleList list = scattered(random, 1 + random.below(200));
         const Vec3 center = random.in_cube(1.0);
         const auto surface = surface_of(list, center, 10.0);
@@ -109,6 +111,7 @@ TEST(Vicinity, lists_what_is_within_a_distance_of_here_in_order_and_says_when_so
     const Material material;
     for (int i = 0; i < 300; ++i)
     {
+        SCOPED_TRACE(i);
         const TriangleList list = scattered(random, 100);
         const Vec3 center = to_world(pose, random.in_cube(0.5));
         const auto surface = surface_of(list, to_model(pose, center), 10.0);
@@ -151,6 +154,7 @@ TEST(Vicinity, a_bound_is_never_more_than_the_distance_wherever_it_was_seen_from
     const Material material;
     for (int i = 0; i < 2'000; ++i)
     {
+        SCOPED_TRACE(i);
         const TriangleList list = scattered(random, 1);
         const Vec3 center = to_world(pose, random.in_cube(1.0));
         const auto surface = surface_of(list, to_model(pose, center), 10.0);
@@ -180,6 +184,7 @@ TEST(Vicinity, a_motion_enters_nothing_that_it_does_not_name)
     int named = 0;
     for (int i = 0; i < 2'000; ++i)
     {
+        SCOPED_TRACE(i);
         const TriangleList list = scattered(random, 60);
         const Vec3 center = random.in_cube(0.5);
         const double truth = distance_to(list, center);
@@ -297,6 +302,7 @@ TEST(Vicinity, of_several_surfaces_lists_the_nearest_and_says_how_far_it_reaches
     const Material material;
     for (int round = 0; round < 20; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         const Vec3 center = random.in_cube(0.5);
         std::vector<TriangleList> lists;
         std::vector<std::unique_ptr<OwnedSurface>> surfaces;

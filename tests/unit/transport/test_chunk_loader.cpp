@@ -386,6 +386,7 @@ TEST(ChunkLoader, brings_each_model_its_own_pieces_of_the_same_numbers)
     EXPECT_EQ(arrivals, (std::array<std::uint32_t, 2>{3, 3}));
     for (const std::uint32_t model : {0U, 1U})
     {
+        SCOPED_TRACE(model);
         EXPECT_EQ(road.sut.counters(model).delivered, 3U);
         EXPECT_EQ(road.sut.counters(model).refused(), 0U);
         EXPECT_EQ(road.sut.waiting_times(model).total(), 3U);

@@ -324,6 +324,7 @@ TEST(EditState, steps_lead_from_any_state_to_any_later_one)
     const std::uint32_t face_ids = edited_model().header.counts().face_ids();
     for (int round = 0; round < 60; ++round)
     {
+        SCOPED_TRACE("round " + std::to_string(round));
         // Two states of one history, or two that share only their removed source faces' order.
         RandomEdits edits(edited_model().header, kEditRoom);
         EditState from = empty_state();
@@ -366,7 +367,7 @@ TEST(EditState, steps_lead_from_any_state_to_any_later_one)
             naive.apply(steps[i], face_ids);
         }
         EXPECT_GE(first_gone, last_come);
-        EXPECT_EQ(naive, wanted) << "round " << round;
+        EXPECT_EQ(naive, wanted);
         EXPECT_TRUE(from.is_same_surface(target));
         EXPECT_TRUE(from.steps_to(target).empty());
     }
