@@ -11,7 +11,7 @@
 ///
 /// Constants that affect only the speed or the quality of one algorithm stand at the top of its
 /// source, rounding errors beside their arithmetic, and layout sizes beside the layout. A test
-/// names each constant below and checks both sides of it (guard.text).
+/// names each constant below (guard.text); the guard does not show that the test reaches it.
 // Any thread: constants.
 namespace tactus
 {
@@ -68,8 +68,8 @@ inline constexpr std::uint32_t kMaxTools = 16;
 /// Largest capacity of a scene in objects; about 250 B each. Frame::start reserves the capacity
 /// that its caller sets, and refuses a larger one.
 inline constexpr std::uint32_t kMaxObjects = 4'096;
-/// Largest number of models that share the pools; 8 KiB each besides header and base mesh. A slot's
-/// owner is stored in one byte.
+/// Largest number of models that share the pools; 12 KiB each besides header and base mesh. A
+/// slot's owner is stored in one byte.
 inline constexpr std::uint32_t kMaxModels = 256;
 /// Largest number of tracked pairs of a tool and a near object; 5.3 KiB each, 3 KiB more with
 /// contacts and 10 KiB more if the tool is a mesh. The nearest pairs are tracked. A tool goes no
