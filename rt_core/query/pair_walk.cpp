@@ -17,11 +17,6 @@ namespace tactus
 namespace
 {
 
-/// Bound on the share of a coordinate that is lost when a double is split into two floats: 2^-48,
-/// rounded up.
-constexpr double kSplitRounding = 0x1p-46;
-constexpr double kLeastSlack = 0x1p-40;
-
 /// Largest travel of the tool for which entries are used, in quanta: no model is larger, and single
 /// precision is right to a quantum.
 constexpr double kMostTravel = 0x1p24;
