@@ -37,20 +37,6 @@ constexpr double kMarkShare = 0.25;
 /// Least cosine between the normals of a face before and after.
 constexpr double kLeastNormalCosine = 0.5;
 
-struct MergePointHash
-{
-    std::size_t operator()(const GridPoint& point) const noexcept
-    {
-        std::uint64_t hash = 0;
-        for (const std::int32_t value : point)
-        {
-            hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x9E37'79B9'7F4A'7C15ULL;
-            hash ^= hash >> 32U;
-        }
-        return static_cast<std::size_t>(hash);
-    }
-};
-
 class PieceMerger
 {
 public:
@@ -60,7 +46,7 @@ public:
         , sliver_(std::max(kSliverHeight_quanta, kSliverShare * slack))
         , is_alive_(faces.size(), true)
     {
-        std::unordered_map<GridPoint, std::uint32_t, MergePointHash> found;
+        std::unordered_map<GridPoint, std::uint32_t, GridPointHash> found;
         for (std::uint32_t face = 0; face < faces.size(); ++face)
         {
             std::array<std::uint32_t, 3> corners{};

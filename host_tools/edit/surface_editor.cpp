@@ -30,20 +30,6 @@ constexpr std::uint64_t kShifts = 16;
 /// Largest number of faces that are compared in the search for a near one.
 constexpr std::size_t kBucketSamples = 256;
 
-struct GridPointHash
-{
-    std::size_t operator()(const GridPoint& point) const noexcept
-    {
-        std::uint64_t hash = 0;
-        for (const std::int32_t value : point)
-        {
-            hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x9E37'79B9'7F4A'7C15ULL;
-            hash ^= hash >> 32U;
-        }
-        return static_cast<std::size_t>(hash);
-    }
-};
-
 Triangle to_triangle(const GridTriangle& face)
 {
     return {to_vec3(face[0]), to_vec3(face[1]), to_vec3(face[2])};

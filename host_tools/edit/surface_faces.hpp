@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/mesh/quantised_mesh.hpp"
 #include "rt_core/math/vec3.hpp"
 
 #include <algorithm>
@@ -15,9 +16,22 @@
 namespace tactus
 {
 
-/// A point of a model's grid, in quanta.
-using GridPoint = std::array<std::int32_t, 3>;
 using GridTriangle = std::array<GridPoint, 3>;
+
+/// Hash of a grid point for tables of points.
+struct GridPointHash
+{
+    std::size_t operator()(const GridPoint& point) const noexcept
+    {
+        std::uint64_t hash = 0;
+        for (const std::int32_t value : point)
+        {
+            hash = (hash ^ static_cast<std::uint32_t>(value)) * 0x9E37'79B9'7F4A'7C15ULL;
+            hash ^= hash >> 32U;
+        }
+        return static_cast<std::size_t>(hash);
+    }
+};
 
 [[nodiscard]] inline Vec3 to_vec3(const GridPoint& point) noexcept
 {

@@ -410,17 +410,9 @@ void SceneMailbox::move_on(std::size_t object, MonotonicTime now) noexcept
 /// meet; 0 if no tool is near.
 double SceneMailbox::way_near_m(std::size_t object, const Similarity& to) const noexcept
 {
-    double way_m = 0.0;
-    for (std::size_t i = 0; i < touches_.size() && blends_[object].is_near; ++i)
-    {
-        const ObjectTouch& touch = touches_[i];
-        if (touch.object == object)
-        {
-            way_m = std::max(way_m,
-                             way_in_sphere_m(places_[object], to, touch.place_m, touch.radius_m));
-        }
-    }
-    return way_m;
+    return blends_[object].is_near
+               ? way_at_touches_m(touches_, static_cast<std::uint32_t>(object), places_[object], to)
+               : 0.0;
 }
 
 Similarity SceneMailbox::place_at(const Blend& blend, MonotonicTime now) noexcept
