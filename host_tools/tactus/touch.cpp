@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-namespace tactus::front
+namespace tactus::tactus_program
 {
 
 namespace
@@ -219,4 +219,4 @@ int touch(int argc, char** argv)
     return code;
 }
 
-} // namespace tactus::front
+} // namespace tactus::tactus_program
