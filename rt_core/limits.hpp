@@ -300,9 +300,9 @@ inline constexpr double kSlewShare_per_ms = 0.01;
 inline constexpr double kSlewShareMin_per_ms = 1e-4;
 /// Time, in seconds, for which the slew limit must act before ForceOff::growth is reported.
 inline constexpr double kChangeTold_s = 0.02;
-/// Share of a device's own damping that may be added by computation. A sampled damper of b on a
-/// device with damping B stays passive while b + k T / 2 < B (Colgate and Schenkel 1997), k being
-/// the wall's stiffness and T the period; half leaves the other half to the wall.
+/// Share of a device's own damping that may be added by computation. A sampled damper b on a device
+/// with damping B stays passive while b + k T / 2 < B (Colgate and Schenkel 1997). Here k is the
+/// wall's stiffness and T the period. Half leaves the other half to the wall.
 inline constexpr double kDampingShare = 0.5;
 
 // --- Stability (docs/stability.md) ---------------------------------------------------------------
