@@ -54,7 +54,7 @@ private:
     /// Nearness farther than any: all pairs fit.
     static constexpr Nearness kNothing{kInfinity, 0xFFFF'FFFFU};
 
-    void look(const FrameParts& parts) noexcept;
+    void update_tools(const FrameParts& parts) noexcept;
     [[nodiscard]] Nearness first_left_out(const FrameParts& parts) const noexcept;
     [[nodiscard]] Nearness nearness(const FrameParts& parts, std::uint32_t tool,
                                     std::uint32_t object) const noexcept;

@@ -148,7 +148,7 @@ void Pair::place(const Budgets& budgets) noexcept
 
 void Pair::update_region() noexcept
 {
-    region_of_interest_.look(parts_.tool->spec(), parts_.tool->placement(), parts_.object->pose);
+    region_of_interest_.update(parts_.tool->spec(), parts_.tool->placement(), parts_.object->pose);
     if (!parts_.rules->variant.lets_pairs_rest || tells_distance())
     {
         region_of_interest_.wake();

@@ -235,7 +235,7 @@ private:
             }
             if (near->tool != remembered_.tool || near->object != remembered_.object)
             {
-                walk.settle(test_blocks(*near));
+                walk.end_pair(test_blocks(*near));
             }
         }
         findings_.leave(static_cast<double>(walk.end()) * quantum_m_);

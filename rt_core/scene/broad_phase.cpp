@@ -104,7 +104,7 @@ void BroadPhase::remove(std::uint32_t object) noexcept
     }
 }
 
-void BroadPhase::look(std::uint32_t tool, const Vec3& center_m, double near_m) noexcept
+void BroadPhase::move_tool(std::uint32_t tool, const Vec3& center_m, double near_m) noexcept
 {
     TACTUS_ASSERT(tool < tool_count_);
     TACTUS_ASSERT(near_m >= 0.0);
