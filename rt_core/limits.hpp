@@ -11,7 +11,7 @@
 ///
 /// Constants that affect only the speed or the quality of one algorithm stand at the top of its
 /// source, rounding errors beside their arithmetic, and layout sizes beside the layout. A test
-/// names each constant below and checks both sides of it (guard.text).
+/// names each constant below (guard.text); the guard does not show that the test reaches it.
 // Any thread: constants.
 namespace tactus
 {
@@ -68,8 +68,8 @@ inline constexpr std::uint32_t kMaxTools = 16;
 /// Largest capacity of a scene in objects; about 250 B each. Frame::start reserves the capacity
 /// that its caller sets, and refuses a larger one.
 inline constexpr std::uint32_t kMaxObjects = 4'096;
-/// Largest number of models that share the pools; 8 KiB each besides header and base mesh. A slot's
-/// owner is stored in one byte.
+/// Largest number of models that share the pools; 12 KiB each besides header and base mesh. A
+/// slot's owner is stored in one byte.
 inline constexpr std::uint32_t kMaxModels = 256;
 /// Largest number of tracked pairs of a tool and a near object; 5.3 KiB each, 3 KiB more with
 /// contacts and 10 KiB more if the tool is a mesh. The nearest pairs are tracked. A tool goes no
@@ -300,9 +300,9 @@ inline constexpr double kSlewShare_per_ms = 0.01;
 inline constexpr double kSlewShareMin_per_ms = 1e-4;
 /// Time, in seconds, for which the slew limit must act before ForceOff::growth is reported.
 inline constexpr double kChangeTold_s = 0.02;
-/// Share of a device's own damping that may be added by computation. A sampled damper of b on a
-/// device with damping B stays passive while b + k T / 2 < B (Colgate and Schenkel 1997), k being
-/// the wall's stiffness and T the period; half leaves the other half to the wall.
+/// Share of a device's own damping that may be added by computation. A sampled damper b on a device
+/// with damping B stays passive while b + k T / 2 < B (Colgate and Schenkel 1997). Here k is the
+/// wall's stiffness and T the period. Half leaves the other half to the wall.
 inline constexpr double kDampingShare = 0.5;
 
 // --- Stability (docs/stability.md) ---------------------------------------------------------------

@@ -50,9 +50,11 @@ inline constexpr std::size_t kMaxCodedEditBytes =
 /// each, in the order of their first use; added faces: slot u32, bucket u32, vertices u16 x 3.
 void encode_edit(const EditContent& edit, const ModelHeader& header, std::vector<std::byte>& coded);
 
-/// Decodes an untrusted edit. Refused in one line: bytes that are missing or left over, more than
-/// `most` faces of a kind, ids and slots that the model can't have or that occur twice, a bucket of
-/// more than 31 bits, a box that is empty or not finite, and vertices outside the model's box.
+/// Decodes an untrusted edit. Refused in one line are:
+/// - bytes that are missing or left over, and more than `most` faces of a kind,
+/// - ids and slots that the model can't have or that occur twice,
+/// - a bucket of more than 31 bits, and a box that is empty or not finite,
+/// - vertices outside the model's box.
 [[nodiscard]] Result<EditContent, Refusal> decode_edit(std::span<const std::byte> coded,
                                                        const ModelHeader& header,
                                                        std::size_t most = kMaxEditFaces);

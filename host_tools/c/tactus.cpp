@@ -113,10 +113,11 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     check_range(tool.shape, TACTUS_SPHERE, TACTUS_BOX, name + "shape");
     const double largest_m = tool.query_only != 0 ? 1e3 : 1.0; // No tool of a hand is larger.
     check_range(tool.radius_m, 1e-6, largest_m, name + "radius_m");
-    check_range(tool.stiffness_n_per_m, 1e-3, 1e6, name + "stiffness_n_per_m");
-    check_range(tool.force_max_n, 1e-3, 1e6, name + "force_max_n");
-    check_range(tool.torque_max_nm, 0.0, 1e6, name + "torque_max_nm");
-    check_range(tool.speed_max_m_per_s, 1e-6, 1e6, name + "speed_max_m_per_s");
+    check_range(tool.stiffness_n_per_m, kSmallestLimit, kLargestLimit, name + "stiffness_n_per_m");
+    check_range(tool.force_max_n, kSmallestLimit, kLargestLimit, name + "force_max_n");
+    check_range(tool.torque_max_nm, 0.0, kLargestLimit, name + "torque_max_nm");
+    check_range(tool.speed_max_m_per_s, kSlowest_m_per_s, kLargestLimit,
+                name + "speed_max_m_per_s");
     check_range(tool.shading_m, tool.shading_m == 0.0 ? 0.0 : kShadingWidthMin_m,
                 kShadingWidthMax_m, name + "shading_m");
     if (tool.shading_m != 0.0 && tool.shape != TACTUS_SPHERE)
@@ -188,7 +189,8 @@ void read_setup(const tactus_setup& from, Scene& scene)
     check_range(from.tool_count, 1, kMaxTools, "setup.tool_count");
     check_range(from.object_count, 1, kMaxObjects, "setup.object_count");
     check_range(static_cast<double>(from.period_ns), 1e4, 1e9, "setup.period_ns");
-    check_range(from.object_speed_max_m_per_s, 1e-6, 1e6, "setup.object_speed_max_m_per_s");
+    check_range(from.object_speed_max_m_per_s, kSlowest_m_per_s, kLargestLimit,
+                "setup.object_speed_max_m_per_s");
     for (std::uint32_t i = 0; i < from.model_count; ++i)
     {
         const tactus_model& model = given(given(from.models, "setup.models") == nullptr
@@ -307,30 +309,14 @@ void load(tactus_frame& frame)
     frame.chunk_loader->step(frame.now_ns.load(std::memory_order_relaxed));
 }
 
-/// Greatest distance, in metres, that a move of the object to `to` causes at a place that a tool
-/// may touch.
-double way_near_m(const tactus_frame& frame, std::uint32_t object, const Similarity& to)
-{
-    double way_m = 0.0;
-    for (const ObjectTouch& touch : frame.touches)
-    {
-        if (touch.object == object)
-        {
-            way_m = std::max(
-                way_m, way_in_sphere_m(frame.places[object], to, touch.place_m, touch.radius_m));
-        }
-    }
-    return way_m;
-}
-
 /// Moves an object in this frame, rate-limited near tools. False if the move must continue in the
 /// next frame.
 bool carry(tactus_frame& frame, SceneChange& move)
 {
     const double since_s = 1e-9 * static_cast<double>(frame.period_ns);
-    const auto way_to_m = [&](const Similarity& place)
-    { return way_near_m(frame, move.number, place); };
     Similarity& place = frame.places[move.number];
+    const auto way_to_m = [&](const Similarity& to)
+    { return way_at_touches_m(frame.touches.view(), move.number, place, to); };
     const double way_m = way_to_m(move.pose);
     for (const ObjectTouch& touch : frame.touches)
     {

@@ -36,6 +36,9 @@ namespace
 {
 
 constexpr std::uint32_t kNoNode = 0xFFFF'FFFFU;
+/// Share of an edge by which its entry may seem to lie behind its exit. With more, the edge misses
+/// the polyhedron; with less, exact tests decide.
+constexpr double kEntryAfterExit = 1e-6;
 
 struct Vec3Hash
 {
@@ -315,7 +318,7 @@ private:
                 first_exit = std::min(first_exit, along);
             }
         }
-        if (!starts_inside && !ends_inside && last_entry > first_exit + 1e-6)
+        if (!starts_inside && !ends_inside && last_entry > first_exit + kEntryAfterExit)
         {
             return edge;
         }

@@ -2,6 +2,7 @@
 // Copyright the Tactus authors.
 #pragma once
 
+#include "host_tools/mesh/quantised_mesh.hpp"
 #include "rt_core/math/triangle.hpp"
 #include "rt_core/math/vec3.hpp"
 
@@ -17,19 +18,12 @@
 namespace tactus
 {
 
-/// A point of a model's grid, in quanta.
-using GridPoint = std::array<std::int32_t, 3>;
 using GridTriangle = std::array<GridPoint, 3>;
 
-[[nodiscard]] inline Vec3 to_vec3(const GridPoint& point) noexcept
-{
-    return {static_cast<double>(point[0]), static_cast<double>(point[1]),
-            static_cast<double>(point[2])};
-}
-
+/// Hash of a grid point for tables of points.
 struct GridPointHash
 {
-    [[nodiscard]] std::size_t operator()(const GridPoint& point) const noexcept
+    std::size_t operator()(const GridPoint& point) const noexcept
     {
         std::uint64_t hash = 0;
         for (const std::int32_t value : point)
@@ -40,6 +34,12 @@ struct GridPointHash
         return static_cast<std::size_t>(hash);
     }
 };
+
+[[nodiscard]] inline Vec3 to_vec3(const GridPoint& point) noexcept
+{
+    return {static_cast<double>(point[0]), static_cast<double>(point[1]),
+            static_cast<double>(point[2])};
+}
 
 /// A box of grid points, with its borders.
 struct GridBox

@@ -27,6 +27,8 @@ constexpr double kHullMargin_quanta = 4.0 * kSweptShift_quanta;
 constexpr double kAlongCosine = 0.8;
 /// Edges into which each edge of an icosahedron is cut for a sphere.
 constexpr int kSphereCuts = 3;
+/// Distance on the unit sphere up to which two points are the same one, computed from two facets.
+constexpr double kSameSpherePoint = 1e-6;
 
 /// Well-mixed number in -1 .. 1 for each index.
 double shift_of(std::uint64_t seed, std::uint64_t index)
@@ -64,9 +66,9 @@ std::vector<Vec3> sphere_points()
                                  icosahedron.vertices[facet[1]] * k +
                                  icosahedron.vertices[facet[2]] * (kSphereCuts - i - k);
                 const Vec3 point = sum.normalized();
-                const bool is_new =
-                    std::none_of(points.begin(), points.end(),
-                                 [&](const Vec3& p) { return (p - point).norm() < 1e-6; });
+                const bool is_new = std::none_of(points.begin(), points.end(),
+                                                 [&](const Vec3& p)
+                                                 { return (p - point).norm() < kSameSpherePoint; });
                 if (is_new)
                 {
                     points.push_back(point);

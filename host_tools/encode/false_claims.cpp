@@ -26,8 +26,6 @@ namespace tactus
 namespace
 {
 
-using GridPoint = std::array<std::int32_t, 3>;
-
 /// Tolerance of distances: above their rounding, below any bound except zero.
 constexpr double kSlack_quanta = 1e-3;
 /// Number of cuts. The first one splits no record, the last one half of them.

@@ -13,7 +13,6 @@ namespace tactus
 namespace
 {
 
-using GridPoint = std::array<std::int32_t, 3>;
 using Corners = std::array<std::uint32_t, 3>;
 
 /// Margin of a box for an error bound, in quanta: the bound rounded up, plus one for the rounding

@@ -57,14 +57,18 @@ struct Cells
     std::uint32_t rows;
 };
 
+/// Range of the columns, as factors on the requested ratio's: the ratio changes by their square.
+constexpr double kFewestColumns = 0.7;
+constexpr double kMostColumns = 1.4;
+
 /// Grid of columns x rows whose cell count is nearest to `cells`, with at most twice or half the
 /// requested ratio. Between equally near counts the columns nearest to the requested ratio are
 /// chosen.
 Cells choose_cells(std::uint32_t cells, double columns_per_row, Cells least)
 {
     const double ideal = std::sqrt(static_cast<double>(cells) * columns_per_row);
-    const auto from = std::max(least.columns, static_cast<std::uint32_t>(0.7 * ideal));
-    const auto to = std::max(from, static_cast<std::uint32_t>(1.4 * ideal));
+    const auto from = std::max(least.columns, static_cast<std::uint32_t>(kFewestColumns * ideal));
+    const auto to = std::max(from, static_cast<std::uint32_t>(kMostColumns * ideal));
     const auto cost = [&](const Cells& c)
     {
         const double product = static_cast<double>(c.columns) * static_cast<double>(c.rows);

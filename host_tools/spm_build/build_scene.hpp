@@ -15,7 +15,6 @@
 namespace tactus::spm_build
 {
 
-/// A model of a scene.
 struct SceneModel
 {
     std::string name; ///< Name of its file, without ".spm".

@@ -115,6 +115,8 @@ constexpr double kLeastUsual_m = 1e-3;
 constexpr double kMostUsual_m = 10.0;
 /// Maximum ratio of a terrain's least extent to its largest; a mask or a relief has a higher ratio.
 constexpr double kTerrainRelief = 0.3;
+/// Minimum share of a terrain's projected area that faces one way: it has hardly any overhang.
+constexpr double kTerrainOneWay = 0.999;
 /// Distance from the origin, in diagonals of the model, beyond which a user who starts at the
 /// origin finds nothing.
 constexpr double kFarDiagonals = 10.0;
@@ -162,7 +164,7 @@ bool is_like_terrain(const TriangleMesh& mesh)
     Eigen::Index up = 0;
     const double height = extents.minCoeff(&up);
     return height > 0.0 && height <= kTerrainRelief * extents.maxCoeff() &&
-           std::abs(sum[up]) >= 0.999 * absolute[up];
+           std::abs(sum[up]) >= kTerrainOneWay * absolute[up];
 }
 
 std::vector<std::string> size_notes(const TriangleMesh& mesh, const ModelPlace& place,

@@ -21,7 +21,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace tactus::front
+namespace tactus::tactus_program
 {
 
 namespace
@@ -134,4 +134,4 @@ std::variant<std::string, int> cached_model(const CommandLine& line, const std::
     return line.fail("no folder for the model" + reasons);
 }
 
-} // namespace tactus::front
+} // namespace tactus::tactus_program

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactus::front
+namespace tactus::tactus_program
 {
 
 namespace
@@ -99,9 +99,10 @@ int run(int argc, char** argv)
 
 } // namespace
 
-} // namespace tactus::front
+} // namespace tactus::tactus_program
 
 int main(int argc, char** argv)
 {
-    return tactus::run_program("tactus", "", [&] { return tactus::front::run(argc, argv); });
+    return tactus::run_program("tactus", "",
+                               [&] { return tactus::tactus_program::run(argc, argv); });
 }

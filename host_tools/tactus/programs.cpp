@@ -19,7 +19,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace tactus::front
+namespace tactus::tactus_program
 {
 
 namespace
@@ -104,4 +104,4 @@ int wait_for(pid_t process)
     return ended > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : kExitFailed;
 }
 
-} // namespace tactus::front
+} // namespace tactus::tactus_program

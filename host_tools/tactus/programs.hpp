@@ -13,7 +13,7 @@
 #include <vector>
 
 // Other programs of Tactus, which lie in the folder of this one. One thread.
-namespace tactus::front
+namespace tactus::tactus_program
 {
 
 /// Fault of a program that can't be started; empty if it can.
@@ -42,4 +42,4 @@ namespace tactus::front
                                                           const std::string& mesh,
                                                           const std::vector<std::string>& options);
 
-} // namespace tactus::front
+} // namespace tactus::tactus_program

@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-namespace tactus::front
+namespace tactus::tactus_program
 {
 
 namespace
@@ -218,4 +218,4 @@ int touch(int argc, char** argv)
     return code;
 }
 
-} // namespace tactus::front
+} // namespace tactus::tactus_program

@@ -51,7 +51,6 @@ struct OperatorChoice
     std::string object;
 };
 
-/// Options of one tool.
 struct ToolOptions
 {
     std::optional<ToolChoice> shape; ///< Shape; none: default_tool().

@@ -39,9 +39,13 @@ constexpr double kWithinRadius = 0.99;
 constexpr double kBytesPerMib = 1024.0 * 1024.0;
 /// Speed limit of the proxy without --proxy-speed, in diagonals of the first object per second.
 constexpr double kSpeedMax_diag = 1.0;
-/// Speed limit of a simulated device, in diagonals of its object per second. An operator that
-/// follows an object catches up at half of it.
+/// Speed limit of a simulated device, in diagonals of its object per second.
 constexpr double kOperatorSpeed_diag = 4.0;
+/// Share of that limit at which an operator that follows an object catches up.
+constexpr double kCatchUpShare = 0.5;
+/// Largest share of a device's force or torque that a payload may take, so that walls can still be
+/// felt. Messages call it "half".
+constexpr double kPayloadShareMax = 0.5;
 /// Least diagonal of an object that is chosen for a simulated operator, in radii of its tool. If no
 /// object is so large, the first one is chosen.
 constexpr double kOperatorRoom = 10.0;
@@ -409,8 +413,7 @@ std::optional<Refusal> Controller::check_grippers(const Options& options) const
     return std::nullopt;
 }
 
-/// Sets the tool's payload. Refuses one above half of the device's force or torque, so that walls
-/// can still be felt.
+/// Sets the tool's payload. Refuses one above kPayloadShareMax of the device's force or torque.
 std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t tool)
 {
     ToolLoad& load = tools_[tool].load;
@@ -423,15 +426,15 @@ std::optional<Refusal> Controller::hang_load(const Options& options, std::size_t
     const std::string option = options.of_tool("--tool-mass", tool);
     const DeviceInfo& device = tools_[tool].device->info();
     const double torque_max_nm = device.limits.rotation.torque_max_nm;
-    if (load.weight_n() > 0.5 * device.limits.force_max_n)
+    if (load.weight_n() > kPayloadShareMax * device.limits.force_max_n)
     {
-        return Refusal{fmt::format("{}: {:.4g} kg weigh {:.3g} N; the device {} carries at most "
-                                   "half of its {:.3g} N, which is {:.3g} kg",
-                                   option, load.mass_kg, load.weight_n(), device.name,
-                                   device.limits.force_max_n,
-                                   0.5 * device.limits.force_max_n / kGravity_m_per_s2)};
+        return Refusal{fmt::format(
+            "{}: {:.4g} kg weigh {:.3g} N; the device {} carries at most "
+            "half of its {:.3g} N, which is {:.3g} kg",
+            option, load.mass_kg, load.weight_n(), device.name, device.limits.force_max_n,
+            kPayloadShareMax * device.limits.force_max_n / kGravity_m_per_s2)};
     }
-    if (torque_max_nm > 0.0 && load.torque_max_nm() > 0.5 * torque_max_nm)
+    if (torque_max_nm > 0.0 && load.torque_max_nm() > kPayloadShareMax * torque_max_nm)
     {
         return Refusal{fmt::format("{}: {:.4g} kg at {:.3g} m cause a torque of {:.3g} N m; the "
                                    "device {} carries at most half of its {:.3g} N m",
@@ -504,7 +507,7 @@ std::optional<Refusal> Controller::simulate_device(const Options& options, std::
         motion.value().motion = std::make_unique<FollowingOperator>(
             std::move(motion.value().motion), frame().objects(), static_cast<std::uint32_t>(object),
             model_pose(poses_[object], headers_[objects_[object].model.value].origin_m()),
-            0.5 * kOperatorSpeed_diag * scene.diagonal_m * to_seconds(options.period()));
+            kCatchUpShare * kOperatorSpeed_diag * scene.diagonal_m * to_seconds(options.period()));
     }
     auto device = SimulatedDevice::create(device_options, std::move(motion.value().motion));
     if (!device)

@@ -165,7 +165,7 @@ ServerTopics* SessionRun::connected_topics()
                 [recorder](std::uint32_t number, std::uint32_t generation, const std::string& name)
             { recorder->name_object(number, generation, name); };
         }
-        parts_.topics->connect(mailbox_, make_edit_mailbox(), telemetry_, make_front(),
+        parts_.topics->connect(mailbox_, make_edit_mailbox(), telemetry_, make_refinement_state(),
                                time_.clock().now(), std::move(names));
     }
     return parts_.topics;
@@ -191,13 +191,13 @@ EditMailbox* SessionRun::make_edit_mailbox()
 }
 
 /// Tap of the refinement state; null if no viewer gets it.
-RefinementStateTap* SessionRun::make_front()
+RefinementStateTap* SessionRun::make_refinement_state()
 {
     if (parts_.topics->shows_refinement_state())
     {
-        front_.emplace(parts_.controller.page_pool());
+        refinement_state_.emplace(parts_.controller.page_pool());
     }
-    return front_ ? &*front_ : nullptr;
+    return refinement_state_ ? &*refinement_state_ : nullptr;
 }
 
 LoopParts SessionRun::loop_parts()
@@ -225,7 +225,7 @@ LoopParts SessionRun::loop_parts()
             .scene_mailbox = has_topics || parts_.program != nullptr ? &mailbox_ : nullptr,
             .edit_mailbox = edit_mailbox_ != nullptr ? edit_mailbox_.get() : parts_.edits.mailbox,
             .telemetry = has_topics ? &telemetry_ : nullptr,
-            .front = front_ ? &*front_ : nullptr,
+            .refinement_state = refinement_state_ ? &*refinement_state_ : nullptr,
             .trace = parts_.trace != nullptr ? &parts_.trace->tap() : nullptr,
             .hands = parts_.hands,
             .cuts = edit_mailbox_ != nullptr ? parts_.topics->cut_tap() : parts_.edits.cuts};

@@ -92,7 +92,7 @@ private:
     [[nodiscard]] ServerTopics* connected_topics();
     [[nodiscard]] ProgramScene* connected_program();
     [[nodiscard]] EditMailbox* make_edit_mailbox();
-    [[nodiscard]] RefinementStateTap* make_front();
+    [[nodiscard]] RefinementStateTap* make_refinement_state();
     [[nodiscard]] LoopParts loop_parts();
     [[nodiscard]] std::optional<Refusal> start_supervisor();
     void run_loop();
@@ -118,7 +118,7 @@ private:
     std::unique_ptr<EditMailbox> edit_mailbox_; ///< Null if no server edits a model.
     TelemetryTap telemetry_;
     /// Tap of the refinement state; none if no viewer gets it.
-    std::optional<RefinementStateTap> front_;
+    std::optional<RefinementStateTap> refinement_state_;
     std::optional<LastInputs> last_inputs_; ///< None with --record.
     TransportRounds transport_;
     std::optional<TransportThread> transport_thread_;

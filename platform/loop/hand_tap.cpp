@@ -129,7 +129,8 @@ HandState HandTap::state(std::size_t tool) const noexcept
     HandState state;
     while (has_frame_.load(std::memory_order_relaxed) && !mailboxes_[tool].try_read(state))
     {
-        // The writer lost its processor in the middle of a write; it will have it again.
+        // The writer lost its processor in the middle of a write; it will have it again. Only a
+        // writer that ends there would keep a reader here, and a thread does not end alone.
     }
     state.began_inside =
         state.began_inside || (begins_inside_.load(std::memory_order_relaxed) >> tool & 1U) != 0;

@@ -353,10 +353,10 @@ void HapticLoop::show(const FrameOutput& output, MonotonicTime start) noexcept
         parts_.telemetry->show(
             {start, states_, devices_, radii_m_, output, parts_.frame->objects()}, statistics_);
     }
-    if (parts_.front != nullptr)
+    if (parts_.refinement_state != nullptr)
     {
-        parts_.front->show({frame_, parts_.frame->regions(), forces_, measures_.budgets},
-                           statistics_);
+        parts_.refinement_state->show({frame_, parts_.frame->regions(), forces_, measures_.budgets},
+                                      statistics_);
     }
     if (parts_.cuts != nullptr)
     {

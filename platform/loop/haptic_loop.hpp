@@ -67,15 +67,15 @@ struct LoopParts
     /// Virtual time: processor time is not measured, because this thread does other threads' work,
     /// too.
     bool is_virtual{false};
-    const ModelMarks* servers_gone{nullptr}; ///< Models whose server is gone; may be null.
-    const ModelMarks* starved{nullptr};      ///< Starved models; may be null.
-    SceneMailbox* scene_mailbox{nullptr};    ///< Motion of the objects; may be null.
-    EditMailbox* edit_mailbox{nullptr};      ///< Edits of the models; may be null.
-    TelemetryTap* telemetry{nullptr};        ///< Shows every frame; may be null.
-    RefinementStateTap* front{nullptr};      ///< Shows the refinement state; may be null.
-    TraceTap* trace{nullptr};                ///< Traces every frame's times; may be null.
-    HandTap* hands{nullptr};                 ///< Shows the program its hands; may be null.
-    CutTap* cuts{nullptr};                   ///< Takes the contacts of tools that cut; may be null.
+    const ModelMarks* servers_gone{nullptr};       ///< Models whose server is gone; may be null.
+    const ModelMarks* starved{nullptr};            ///< Starved models; may be null.
+    SceneMailbox* scene_mailbox{nullptr};          ///< Motion of the objects; may be null.
+    EditMailbox* edit_mailbox{nullptr};            ///< Edits of the models; may be null.
+    TelemetryTap* telemetry{nullptr};              ///< Shows every frame; may be null.
+    RefinementStateTap* refinement_state{nullptr}; ///< Shows the refinement state; may be null.
+    TraceTap* trace{nullptr};                      ///< Traces every frame's times; may be null.
+    HandTap* hands{nullptr};                       ///< Shows the program its hands; may be null.
+    CutTap* cuts{nullptr}; ///< Takes the contacts of tools that cut; may be null.
 };
 
 /// Work of the haptic thread. Every period it reads the devices, runs the frame, makes its forces

@@ -84,7 +84,7 @@ bool SceneMailbox::try_add(std::size_t object, std::uint32_t generation, const O
     SceneEvent scene_event;
     scene_event.kind = SceneChangeKind::object_comes;
     scene_event.object = static_cast<std::uint32_t>(object);
-    scene_event.sample = letter_of(object, pose, arrival);
+    scene_event.sample = sample_of(object, pose, arrival);
     scene_event.model = spec.model.value;
     scene_event.material = spec.material;
     note_heard(object, arrival);
@@ -114,13 +114,13 @@ bool SceneMailbox::try_set_material(std::size_t object, const Material& material
 void SceneMailbox::put(std::size_t object, const ObjectPose& pose, MonotonicTime arrival) noexcept
 {
     TACTUS_ASSERT(object < samples_.size());
-    mailboxes_[object].write(letter_of(object, pose, arrival));
+    mailboxes_[object].write(sample_of(object, pose, arrival));
     note_heard(object, arrival);
     // Pairs with the acquire in take_samples().
     came_[object / kWordBits].fetch_or(bit_of(object), std::memory_order_release);
 }
 
-SceneMailbox::PoseSample SceneMailbox::letter_of(std::size_t object, const ObjectPose& pose,
+SceneMailbox::PoseSample SceneMailbox::sample_of(std::size_t object, const ObjectPose& pose,
                                                  MonotonicTime arrival) noexcept
 {
     PoseSample sample;
@@ -410,17 +410,9 @@ void SceneMailbox::move_on(std::size_t object, MonotonicTime now) noexcept
 /// meet; 0 if no tool is near.
 double SceneMailbox::way_near_m(std::size_t object, const Similarity& to) const noexcept
 {
-    double way_m = 0.0;
-    for (std::size_t i = 0; i < touches_.size() && blends_[object].is_near; ++i)
-    {
-        const ObjectTouch& touch = touches_[i];
-        if (touch.object == object)
-        {
-            way_m = std::max(way_m,
-                             way_in_sphere_m(places_[object], to, touch.place_m, touch.radius_m));
-        }
-    }
-    return way_m;
+    return blends_[object].is_near
+               ? way_at_touches_m(touches_, static_cast<std::uint32_t>(object), places_[object], to)
+               : 0.0;
 }
 
 Similarity SceneMailbox::place_at(const Blend& blend, MonotonicTime now) noexcept

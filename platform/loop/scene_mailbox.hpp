@@ -156,7 +156,7 @@ private:
         bool exceeds_limit{false}; ///< Result of exceeds_limit().
     };
 
-    [[nodiscard]] PoseSample letter_of(std::size_t object, const ObjectPose& pose,
+    [[nodiscard]] PoseSample sample_of(std::size_t object, const ObjectPose& pose,
                                        MonotonicTime arrival) noexcept;
     [[nodiscard]] static ObjectPose pose_of(const PoseSample& sample) noexcept;
     [[nodiscard]] std::size_t take_scene_events() noexcept;

@@ -274,7 +274,7 @@ void ChunkCache::search(IndexSearch& search, const Budgets& most, WorkCounters& 
     std::uint32_t looked = 0;
     const auto look = [&](IndexSearch::NearPage& near)
     {
-        const std::uint32_t more = look_at(near, {search, lanes, most}, work, faults);
+        const std::uint32_t more = search_page(near, {search, lanes, most}, work, faults);
         work.budget.spend(more * group_cost);
         looked += more;
     };
@@ -343,8 +343,8 @@ std::uint32_t ChunkCache::unused_since() const noexcept
 
 /// Searches the due groups of a page: requests chunks that a sphere meets, and finds how far the
 /// spheres may move before the groups are due again. Returns the number of searched groups.
-std::uint32_t ChunkCache::look_at(IndexSearch::NearPage& near, const Look& look, WorkCounters& work,
-                                  FrameFault& faults) noexcept
+std::uint32_t ChunkCache::search_page(IndexSearch::NearPage& near, const Look& look,
+                                      WorkCounters& work, FrameFault& faults) noexcept
 {
     const QuantumBox box = header_.index_entry(near.page).box;
     if (!near.is_met)
@@ -375,13 +375,13 @@ std::uint32_t ChunkCache::look_at(IndexSearch::NearPage& near, const Look& look,
         near.until[static_cast<std::size_t>(std::countr_zero(left))] = IndexSearch::kNever;
     }
     near.due &= (1U << ((index.chunks + 7) / 8)) - 1; // The last page may have fewer groups.
-    look_at_boxes(near, index, box, look, work, faults);
+    search_boxes(near, index, box, look, work, faults);
     return static_cast<std::uint32_t>(std::popcount(near.due));
 }
 
-void ChunkCache::look_at_boxes(IndexSearch::NearPage& near, const IndexPage& index,
-                               const QuantumBox& page_box, const Look& look, WorkCounters& work,
-                               FrameFault& faults) noexcept
+void ChunkCache::search_boxes(IndexSearch::NearPage& near, const IndexPage& index,
+                              const QuantumBox& page_box, const Look& look, WorkCounters& work,
+                              FrameFault& faults) noexcept
 {
     const KernelPage page = look.lanes.page(page_box);
     const std::span<const WantedSphere> spheres = look.search.spheres();

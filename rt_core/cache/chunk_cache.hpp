@@ -140,11 +140,11 @@ private:
     [[nodiscard]] Want want_of(std::uint32_t level, std::uint32_t touch_level) const noexcept;
     void search(IndexSearch& search, const Budgets& most, WorkCounters& work,
                 FrameFault& faults) noexcept;
-    std::uint32_t look_at(IndexSearch::NearPage& near, const Look& look, WorkCounters& work,
-                          FrameFault& faults) noexcept;
-    void look_at_boxes(IndexSearch::NearPage& near, const IndexPage& index,
-                       const QuantumBox& page_box, const Look& look, WorkCounters& work,
-                       FrameFault& faults) noexcept;
+    std::uint32_t search_page(IndexSearch::NearPage& near, const Look& look, WorkCounters& work,
+                              FrameFault& faults) noexcept;
+    void search_boxes(IndexSearch::NearPage& near, const IndexPage& index,
+                      const QuantumBox& page_box, const Look& look, WorkCounters& work,
+                      FrameFault& faults) noexcept;
     [[nodiscard]] bool try_touch(ChunkId chunk, const Want& want, WorkCounters& work) noexcept;
     [[nodiscard]] bool try_want(ChunkId chunk, const Want& want, const Budgets& most,
                                 WorkCounters& work, FrameFault& faults) noexcept;

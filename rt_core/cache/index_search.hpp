@@ -92,6 +92,8 @@ public:
     /// Values of NearPage::until: due in the next frame, and never due, as no box matters.
     static constexpr float kNow = -1.0F;
     static constexpr float kNever = 0x1p120F;
+    /// Factor that reduces a motion by more than all its roundings, also that to a float.
+    static constexpr double kMotionRoundedDown = 1.0 - 0x1p-22;
 
     /// `frame` is the number before the first frame's.
     explicit IndexSearch(std::uint32_t frame) noexcept
@@ -137,8 +139,7 @@ public:
     /// Value for NearPage::until of a certificate that holds for a further motion of `gap`.
     [[nodiscard]] float until(double gap) const noexcept
     {
-        // Reduced by more than all roundings of motions.
-        return static_cast<float>((way_ + gap) * (1.0 - 0x1p-22));
+        return static_cast<float>((way_ + gap) * kMotionRoundedDown);
     }
 
     /// Drops certificates that depend on a page that was loaded or evicted.

@@ -79,7 +79,7 @@ const ToolForce& ForcePipeline::step(const ToolState& tool, const ToolOutput& ou
 {
     const SafetyState was = force_.state;
     const ForceOff was_off = force_.causes;
-    look(tool, output, device, context);
+    update_period(tool, output, device, context);
     take_frame(tool, output);
     add_external(force_, own);
     const Vec3 commanded_n = force_.push.force_n;
@@ -122,10 +122,10 @@ const ToolForce& ForcePipeline::fade(double elapsed_s, ForceOff cause) noexcept
 }
 
 /// Collects the data of this period for the stages.
-void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
-                         const DeviceRecord& device, const PeriodContext& context) noexcept
+void ForcePipeline::update_period(const ToolState& tool, const ToolOutput& output,
+                                  const DeviceRecord& device, const PeriodContext& context) noexcept
 {
-    const bool is_place = look_at_device(tool, device);
+    const bool is_place = update_device(tool, device);
     period_.elapsed_s = context.elapsed_s;
     period_.elapsed_periods = std::max(tool.elapsed_periods, 1U);
     period_.surface_damping_n_s_per_m = context.surface_damping_n_s_per_m;
@@ -143,7 +143,7 @@ void ForcePipeline::look(const ToolState& tool, const ToolOutput& output,
 
 /// Reads the device's data; true if its pose is valid. An invalid pose does not change the
 /// rotation.
-bool ForcePipeline::look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept
+bool ForcePipeline::update_device(const ToolState& tool, const DeviceRecord& device) noexcept
 {
     const DevicePose pose = device.pose.value_or(DevicePose{tool.position_m, tool.rotation});
     period_.device_m = pose.position_m;

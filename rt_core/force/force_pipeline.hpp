@@ -70,9 +70,9 @@ public:
     [[nodiscard]] double gain() const noexcept { return force_fader_.gain(); }
 
 private:
-    void look(const ToolState& tool, const ToolOutput& output, const DeviceRecord& device,
-              const PeriodContext& context) noexcept;
-    [[nodiscard]] bool look_at_device(const ToolState& tool, const DeviceRecord& device) noexcept;
+    void update_period(const ToolState& tool, const ToolOutput& output, const DeviceRecord& device,
+                       const PeriodContext& context) noexcept;
+    [[nodiscard]] bool update_device(const ToolState& tool, const DeviceRecord& device) noexcept;
     void take_frame(const ToolState& tool, const ToolOutput& output) noexcept;
 
     WrenchConditioner conditioner_;

@@ -19,7 +19,8 @@ namespace tactus
 class ModelSet;
 
 /// Pairs of tools and objects that are near each other, with their outputs and memory for further
-/// pairs. Haptic thread.
+/// pairs. Haptic thread. Cost: a frame sorts the pairs by priority and copies their outputs, at
+/// most kMaxPairs.
 class AwakePairs
 {
 public:

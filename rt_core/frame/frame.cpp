@@ -63,6 +63,8 @@ FrameOutput Frame::run(const FrameInput& input, StageMark mark) noexcept
     const bool is_same_scene = input.changes.empty() && input.edits.empty();
     if (is_same_scene && resting_.try_rest(parts_, account_))
     {
+        // Arrivals are adopted even so: slots must not wait in the queue until a tool moves. Every
+        // stage ends, so that the caller has times of all.
         parts_.pools.cache.adopt_arrivals(input.budgets.pages, parts_.rules.frame, account_.work);
         for (const Stage stage :
              {Stage::load, Stage::refine, Stage::refit, Stage::query, Stage::force})

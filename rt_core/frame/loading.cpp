@@ -47,7 +47,7 @@ void Loading::run(FrameParts& parts, FrameAccount& account) noexcept
     parts.pools.cache.adopt_arrivals(budgets.pages, frame, work);
     if (life_)
     {
-        life_->go_on(models, parts.pairs.by_priority(), frame, work);
+        life_->advance(models, parts.pairs.by_priority(), frame, work);
     }
     for (std::uint32_t i = 0; i < models.busy().size(); ++i)
     {

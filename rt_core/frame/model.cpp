@@ -363,8 +363,8 @@ bool Model::try_want() noexcept
     return true;
 }
 
-void Model::go_on(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t frame,
-                  WorkCounters& work) noexcept
+void Model::advance(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t frame,
+                    WorkCounters& work) noexcept
 {
     if (stage == ModelStage::leaving)
     {

@@ -111,8 +111,8 @@ struct Model
     /// Does one frame's work of a wanted, arriving or leaving model. Up to `entering` faces enter
     /// and `leaving` faces leave; both are reduced by that. A wanted model whose base mesh does not
     /// arrive becomes known.
-    void go_on(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t frame,
-               WorkCounters& work) noexcept TACTUS_NONBLOCKING;
+    void advance(std::uint32_t& entering, std::uint32_t& leaving, std::uint32_t frame,
+                 WorkCounters& work) noexcept TACTUS_NONBLOCKING;
     /// True if the model's base mesh may arrive in the cells from `first_cell` on.
     [[nodiscard]] bool awaits_base(std::uint32_t first_cell) const noexcept
     {

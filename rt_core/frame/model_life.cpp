@@ -28,8 +28,8 @@ ModelLife::ModelLife(std::int64_t period_ns) noexcept
 {
 }
 
-void ModelLife::go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
-                      WorkCounters& work) noexcept
+void ModelLife::advance(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
+                        WorkCounters& work) noexcept
 {
     Turn turn{kEnteringFacesPerFrame, kLeavingFacesPerFrame};
     for (const Pair* pair : pairs)
@@ -40,12 +40,12 @@ void ModelLife::go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint3
         // steps.
         if (model.stage != ModelStage::leaving)
         {
-            go_on(model, turn, frame, work);
+            advance(model, turn, frame, work);
         }
     }
     for (const ModelId id : models.busy())
     {
-        go_on(models[id], turn, frame, work);
+        advance(models[id], turn, frame, work);
     }
     let_go(models, frame);
     if (turn.waits != nullptr && !turn.gave_room)
@@ -54,10 +54,10 @@ void ModelLife::go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint3
     }
 }
 
-void ModelLife::go_on(Model& model, Turn& turn, std::uint32_t frame, WorkCounters& work) noexcept
+void ModelLife::advance(Model& model, Turn& turn, std::uint32_t frame, WorkCounters& work) noexcept
 {
     const bool had_room = model.stage != ModelStage::known;
-    model.go_on(turn.entering, turn.leaving, frame, work);
+    model.advance(turn.entering, turn.leaving, frame, work);
     turn.gave_room = turn.gave_room || (had_room && model.stage == ModelStage::known);
 }
 

@@ -31,7 +31,8 @@ struct WorkCounters;
 ///
 /// A model leaves after 2 s without a pair. If memory for a wanted model is missing, the model
 /// without a pair for longest leaves at once. If all have pairs, that of the lowest-priority pair
-/// leaves, if its pairs can spare it and it is twice as far from contact. Haptic thread.
+/// leaves, if its pairs can spare it and it is twice as far from contact. Haptic thread. Cost:
+/// linear in the pairs and the models, and in the faces that enter or leave in the frame.
 class ModelLife
 {
 public:
@@ -39,11 +40,11 @@ public:
 
     /// Does one frame's work, after arrivals were adopted; `pairs` are sorted by priority. Pairs
     /// see the changes in the next frame.
-    void go_on(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
-               WorkCounters& work) noexcept TACTUS_NONBLOCKING;
+    void advance(ModelSet& models, std::span<Pair* const> pairs, std::uint32_t frame,
+                 WorkCounters& work) noexcept TACTUS_NONBLOCKING;
 
 private:
-    /// Progress of one frame of go_on().
+    /// Progress of one frame of advance().
     struct Turn
     {
         std::uint32_t entering{0}; ///< Faces that may still enter in this frame.
@@ -55,7 +56,7 @@ private:
         bool gave_room{false};
     };
     static void want(ModelSet& models, const Pair& pair, std::uint32_t frame, Turn& turn) noexcept;
-    static void go_on(Model& model, Turn& turn, std::uint32_t frame, WorkCounters& work) noexcept;
+    static void advance(Model& model, Turn& turn, std::uint32_t frame, WorkCounters& work) noexcept;
     void let_go(ModelSet& models, std::uint32_t frame) const noexcept;
     static void make_room(ModelSet& models, std::span<Pair* const> pairs, const Pair& waits,
                           std::uint32_t frame) noexcept;

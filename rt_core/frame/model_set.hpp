@@ -19,6 +19,7 @@ namespace tactus
 
 /// Models of a frame, their outputs, and a list of the busy ones, which frames update. A model is
 /// busy while it has a pair, and afterwards until nothing is left to do for it. Haptic thread.
+/// Cost: linear in the busy models, and for a refit in the marked blocks and the nodes above them.
 class ModelSet
 {
 public:

@@ -108,7 +108,7 @@ void Neighbours::forget(FrameParts& parts, std::uint32_t tool) noexcept
 
 void Neighbours::find(FrameParts& parts, FrameAccount& account) noexcept
 {
-    look(parts);
+    update_tools(parts);
     broad_.walk();
     const Nearness first_out = first_left_out(parts);
     const bool has_room_for_all = first_out == kNothing;
@@ -125,7 +125,7 @@ void Neighbours::find(FrameParts& parts, FrameAccount& account) noexcept
 
 /// Sets each tool's search distance: up to surfaces that may matter soon, or to streamed models
 /// that should be loading.
-void Neighbours::look(const FrameParts& parts) noexcept
+void Neighbours::update_tools(const FrameParts& parts) noexcept
 {
     for (std::uint32_t i = 0; i < parts.tools.size(); ++i)
     {
@@ -139,7 +139,7 @@ void Neighbours::look(const FrameParts& parts) noexcept
                          ? std::max(near_m, tool.sphere().radius + tool.placement().reach_m +
                                                 kStreamedHorizon_m)
                          : near_m;
-            broad_.look(i, tool.sphere().center, near_m);
+            broad_.move_tool(i, tool.sphere().center, near_m);
         }
     }
 }

@@ -26,7 +26,8 @@ struct ObjectPose;
 /// A pair lasts while its object is on the tool's list (BroadPhase) and among the nearest that free
 /// pairs suffice for. An object off the list may have passed through the tool. So a new pair begins
 /// apart, without a force, unless the last frame proved a distance larger than the motion of both
-/// since. Haptic thread.
+/// since. Haptic thread. Cost: linear in the listed objects of all tools; a walk over all objects
+/// is more, and a frame has at most kBroadWalks of them.
 class Neighbours
 {
 public:
@@ -53,7 +54,7 @@ private:
     /// Nearness farther than any: all pairs fit.
     static constexpr Nearness kNothing{kInfinity, 0xFFFF'FFFFU};
 
-    void look(const FrameParts& parts) noexcept;
+    void update_tools(const FrameParts& parts) noexcept;
     [[nodiscard]] Nearness first_left_out(const FrameParts& parts) const noexcept;
     [[nodiscard]] Nearness nearness(const FrameParts& parts, std::uint32_t tool,
                                     std::uint32_t object) const noexcept;

@@ -148,7 +148,7 @@ void Pair::place(const Budgets& budgets) noexcept
 
 void Pair::update_region() noexcept
 {
-    region_of_interest_.look(parts_.tool->spec(), parts_.tool->placement(), parts_.object->pose);
+    region_of_interest_.update(parts_.tool->spec(), parts_.tool->placement(), parts_.object->pose);
     if (!parts_.rules->variant.lets_pairs_rest || tells_distance())
     {
         region_of_interest_.wake();
@@ -292,8 +292,7 @@ void Pair::ask(RefineRequests& requests) noexcept
 void Pair::fit_tolerance() noexcept
 {
     room_ = surface_room();
-    const FrameFault late_for = of_object_.closure.late_for | of_tool_.closure.late_for;
-    tolerance_.fit(tolerance_range(), room_, late_for == FrameFault::none);
+    tolerance_.fit(tolerance_range(), room_, late_for() == FrameFault::none);
     of_object_.tolerance = tolerance_.code();
     of_tool_.tolerance = mesh_ != nullptr ? mesh_->tool_tolerance(tolerance_.code()) : 0;
 }
@@ -331,12 +330,11 @@ SurfaceTolerance::Range Pair::tolerance_range() const noexcept
 /// Finds from the last frame whether capacity and time suffice for the surface.
 SurfaceTolerance::Room Pair::surface_room() const noexcept
 {
-    const FrameFault late_for = of_object_.closure.late_for | of_tool_.closure.late_for;
-    if (surface_.is_cut || has_fault(late_for, kSurfaceFull))
+    if (surface_.is_cut || has_fault(late_for(), kSurfaceFull))
     {
         return SurfaceTolerance::Room::short_;
     }
-    if (has_fault(late_for, kSurfaceLate) || (mesh_ != nullptr && !was_answered_))
+    if (has_fault(late_for(), kSurfaceLate) || (mesh_ != nullptr && !was_answered_))
     {
         const DistanceAnswer& answer = surface_.answer;
         const bool is_unknown = mesh_ != nullptr && answer.kind == AnswerKind::bounded &&
@@ -680,6 +678,14 @@ std::uint32_t Pair::enough_meeting() const noexcept
     return touches_ != nullptr && !parts_.tool->spec().wants_contacts ? 1 : kEnoughMeetingFaces;
 }
 
+/// Walks the object's tree for the surface in reach, within `budget`.
+void Pair::gather(QueryMemory& memory, WalkBudget& budget, LocalSurface& surface) const noexcept
+{
+    gather_surface(parts_.model.model->tree, region_of_interest_.core(),
+                   region_of_interest_.reach_m(), memory, budget, surface, proof_share(),
+                   enough_meeting(), tolerance_.felt());
+}
+
 void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept
 {
     if (!region_of_interest_.is_asleep())
@@ -692,9 +698,7 @@ void Pair::query_core(const Budgets& budgets, WorkCounters& work, FrameFault& fa
             query_memory_ = QueryMemory{};
         }
         work.skipped.add(Skip::starts, query_memory_.block != kNoNode ? 1 : 0);
-        gather_surface(parts_.model.model->tree, region_of_interest_.core(),
-                       region_of_interest_.reach_m(), query_memory_, budget, surface, proof_share(),
-                       enough_meeting(), tolerance_.felt());
+        gather(query_memory_, budget, surface);
         note_work_left(work.budget);
         work.nodes_visited += budget.nodes_visited;
         work.triangles_tested += budget.triangles_tested;
@@ -821,9 +825,7 @@ void Pair::warm_caches(const SurfaceRoom& room, const Budgets& budgets,
         budget.frame = &work;
         QueryMemory memory = query_memory_;
         LocalSurface surface = room.surface();
-        gather_surface(parts_.model.model->tree, region_of_interest_.core(),
-                       region_of_interest_.reach_m(), memory, budget, surface, proof_share(),
-                       enough_meeting(), tolerance_.felt());
+        gather(memory, budget, surface);
     }
 }
 

@@ -258,6 +258,11 @@ private:
     void fit_tolerance() noexcept;
     [[nodiscard]] SurfaceTolerance::Range tolerance_range() const noexcept;
     [[nodiscard]] SurfaceTolerance::Room surface_room() const noexcept;
+    /// Reasons for which the questions to both models were not served in the last frame.
+    [[nodiscard]] FrameFault late_for() const noexcept
+    {
+        return of_object_.closure.late_for | of_tool_.closure.late_for;
+    }
     [[nodiscard]] bool would_finer_fit() const noexcept;
     void note_work_left(const WorkBudget& budget) noexcept;
     void ask_for_spheres() noexcept;
@@ -290,6 +295,7 @@ private:
     [[nodiscard]] BoxGap gap_to_box() const noexcept TACTUS_NONBLOCKING;
     void query_box() noexcept TACTUS_NONBLOCKING;
     void query_core(const Budgets& budgets, WorkCounters& work, FrameFault& faults) noexcept;
+    void gather(QueryMemory& memory, WalkBudget& budget, LocalSurface& surface) const noexcept;
     void narrow(DistanceAnswer& answer) const noexcept;
     void report_core(WorkCounters& work) noexcept;
     void query_mesh(WorkCounters& work, FrameFault& faults) noexcept;

@@ -110,7 +110,6 @@ std::uint32_t Refinement::refused_class() const noexcept
     return refused;
 }
 
-/// Groups the requests by model, in by_model_.
 void Refinement::group(ModelSet& models) noexcept
 {
     for (const ModelId id : models.busy())

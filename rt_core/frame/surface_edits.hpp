@@ -16,7 +16,8 @@ struct FrameAccount;
 struct FrameParts;
 
 /// Applies the edits of models' surfaces before any stage, so that the whole frame sees one
-/// surface. A refused edit changes nothing. Haptic thread.
+/// surface. A refused edit changes nothing. Haptic thread. Cost: at most 100,000 instructions an
+/// edit (kMaxEditFaces).
 class SurfaceEdits
 {
 public:

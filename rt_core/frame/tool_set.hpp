@@ -29,7 +29,8 @@ struct ToolStatus
     bool rests{false};
 };
 
-/// Tools of a frame, their status and outputs. Haptic thread.
+/// Tools of a frame, their status and outputs. Haptic thread. Cost: linear in the tools and their
+/// pairs.
 class ToolSet
 {
 public:

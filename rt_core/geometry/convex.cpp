@@ -15,6 +15,9 @@ namespace tactus
 namespace
 {
 
+/// Factor above the roundings of a distance between two points.
+constexpr double kRadiusRoundedUp = 1.0 + 0x1p-50;
+
 Vec3 mean_of(std::span<const Vec3> points) noexcept
 {
     TACTUS_ASSERT(!points.empty());
@@ -42,7 +45,7 @@ double radius_round(const Vec3& center, std::span<const Vec3> points) noexcept
     {
         farthest_sq = std::max(farthest_sq, ((point - center) * scale).squaredNorm());
     }
-    return std::sqrt(farthest_sq) / scale * (1.0 + 0x1p-50);
+    return std::sqrt(farthest_sq) / scale * kRadiusRoundedUp;
 }
 
 } // namespace

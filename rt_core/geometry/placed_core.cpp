@@ -247,7 +247,8 @@ CoreBounds PlacedCore::bounds(const Triangle& triangle) const noexcept
                   kInfinity);
 }
 
-void PlacedCore::see(const std::array<CornerRow, 3>& corners, CornersAtCore& seen) const noexcept
+void PlacedCore::measure_corners(const std::array<CornerRow, 3>& corners,
+                                 CornersAtCore& seen) const noexcept
 {
     for (std::size_t i = 0; i < 3; ++i)
     {

@@ -97,10 +97,10 @@ public:
     /// so their bounds are tight to rounding if a corner of the triangle is nearest. A convex body
     /// has no upper bound. About 40 ns.
     [[nodiscard]] CoreBounds bounds(const Triangle& triangle) const noexcept TACTUS_NONBLOCKING;
-    /// see() and this bounds() do the same for triangles that share corners, in about 20 ns each
-    /// plus 100 for the corners. Lower bounds above `limit` need not be tight.
-    void see(const std::array<CornerRow, 3>& corners,
-             CornersAtCore& seen) const noexcept TACTUS_NONBLOCKING;
+    /// measure_corners() and this bounds() do the same for triangles that share corners, in about
+    /// 20 ns each plus 100 for the corners. Lower bounds above `limit` need not be tight.
+    void measure_corners(const std::array<CornerRow, 3>& corners,
+                         CornersAtCore& seen) const noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] CoreBounds bounds(const CornersAtCore& seen,
                                     const std::array<std::uint8_t, 3>& triangle,
                                     double limit) const noexcept TACTUS_NONBLOCKING;

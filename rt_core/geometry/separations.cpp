@@ -37,11 +37,11 @@ double greatest(const CornersAtCore::Row& row, std::uint32_t used) noexcept
 
 } // namespace
 
-// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): heights are read after see() alone.
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): heights are read after bound_all() alone.
 Separations::Separations(const PlacedCore& core) noexcept : core_(core), body_(core.body()) {}
 
-double Separations::see(const std::array<CornerRow, 3>& corners, std::uint32_t used,
-                        const CornersAtCore& seen, double enough) noexcept
+double Separations::bound_all(const std::array<CornerRow, 3>& corners, std::uint32_t used,
+                              const CornersAtCore& seen, double enough) noexcept
 {
     TACTUS_ASSERT(used != 0 && used >> CornersAtCore::kCorners == 0);
     const double farthest = std::sqrt(greatest(seen.beyond_sq, used)) + core_.half().norm();

@@ -18,7 +18,7 @@ namespace tactus
 /// directions.
 ///
 /// Lengths and frame are those of the placed core. Valid for one query. Haptic thread. 0.7 KiB.
-class Separations // NOLINT(cppcoreguidelines-pro-type-member-init): see() fills the heights.
+class Separations // NOLINT(cppcoreguidelines-pro-type-member-init): bound_all() fills the heights.
 {
 public:
     /// `core` must be a convex body and outlive this object.
@@ -28,11 +28,12 @@ public:
     /// each; below zero if nothing is known. `seen` are the same corners in the frame of the core's
     /// box. Directions are tried until one gives more than `enough`. `corners` must stay valid for
     /// bound(). 20 ns for each direction.
-    [[nodiscard]] double see(const std::array<CornerRow, 3>& corners, std::uint32_t used,
-                             const CornersAtCore& seen, double enough) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] double bound_all(const std::array<CornerRow, 3>& corners, std::uint32_t used,
+                                   const CornersAtCore& seen,
+                                   double enough) noexcept TACTUS_NONBLOCKING;
 
-    /// Lower bound on the distance of one triangle of the last see(), which must have found less
-    /// than enough. Uses the directions known by now, 2 ns for each.
+    /// Lower bound on the distance of one triangle of the last bound_all(), which must have found
+    /// less than enough. Uses the directions known by now, 2 ns for each.
     [[nodiscard]] double
     bound(const std::array<std::uint8_t, 3>& triangle) const noexcept TACTUS_NONBLOCKING;
 

@@ -16,6 +16,13 @@ namespace tactus
 namespace
 {
 
+/// Height of a triangle, as a share of its longest edge, up to which its edges represent it.
+constexpr double kThinnestHeight = 0x1p-50;
+/// Range of squared lengths for which the products in find_closest() neither overflow nor lose
+/// bits.
+constexpr double kLeastLocalSq = 0x1p-260;
+constexpr double kLargestLocalSq = 0x1p260;
+
 // NOLINTBEGIN(cppcoreguidelines-pro-bounds-constant-array-index): columns below 3.
 // NOLINTBEGIN(cppcoreguidelines-avoid-c-arrays,modernize-avoid-c-arrays): rows of SeenTriangle.
 
@@ -98,8 +105,8 @@ void find_in_interior(const SeenTriangle& seen, const Vec3& normal, ClosestPoint
     }
 }
 
-/// Nearest point for lengths between 2^-130 and 2^130; `local_sq` is the largest squared length of
-/// edges and corners.
+/// Nearest point for squared lengths between kLeastLocalSq and kLargestLocalSq; `local_sq` is the
+/// largest squared length of edges and corners.
 ClosestPoint find_closest(const Triangle& triangle, const SeenTriangle& seen,
                           double local_sq) noexcept
 {
@@ -156,7 +163,7 @@ Vec3 exact_normal(const Triangle& triangle, double longest_sq) noexcept
     TACTUS_ASSERT(longest_sq >= 0.0);
     const auto normal = to_vec3(cross(difference<DoubleDouble>(triangle[1], triangle[0]),
                                       difference<DoubleDouble>(triangle[2], triangle[1])));
-    const double least = 0x1p-50 * longest_sq;
+    const double least = kThinnestHeight * longest_sq;
     return normal.squaredNorm() > least * least ? normal : Vec3(0.0, 0.0, 0.0);
 }
 
@@ -193,7 +200,7 @@ ClosestPoint closest_point_seen(const Vec3& query, const Triangle& triangle,
                                 const SeenTriangle& seen) noexcept
 {
     const double local = local_sq(seen);
-    const bool is_in_range = local > 0x1p-260 && local < 0x1p260;
+    const bool is_in_range = local > kLeastLocalSq && local < kLargestLocalSq;
     ClosestPoint result =
         is_in_range ? find_closest(triangle, seen, local) : find_closest_scaled(query, triangle);
     result.point = query + result.gap;

@@ -40,9 +40,9 @@ public:
     /// time that a request takes.
     void observe(const PairMotion& motion, double horizon_s) noexcept TACTUS_NONBLOCKING;
 
-    /// Adds the spheres to the ranking, highest priority first, each widened by `reach_m`: at their
-    /// present place, and moved with the core's centre at each quarter of the horizon, so that
-    /// there is no gap on the path of a tool that had to wait.
+    /// Adds the spheres to the ranking, highest priority first, each widened by `reach_m`. They are
+    /// added at their present place, and moved with the core's centre at each quarter of the
+    /// horizon. The path of a tool that had to wait thus has no gap.
     void rank(Prediction way, ModelId model, const CoreCover& spheres, double reach_m,
               RegionRanking& ranking) const noexcept TACTUS_NONBLOCKING;
 

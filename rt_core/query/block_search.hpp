@@ -63,6 +63,9 @@ struct Findings
     return lower_m <= found.open_m && lower_m <= found.pruned_m && lower_m < kInfinity;
 }
 
+/// Factor that makes a length less by its last bit: inexact faces may begin at the length itself.
+inline constexpr double kJustBelow = 1.0 - 0x1p-52;
+
 /// Answer within `reach_m`, without the nearest face and points, which the caller fills in.
 [[nodiscard]] inline DistanceAnswer answer_from(const Findings& found, double reach_m) noexcept
 {
@@ -71,8 +74,7 @@ struct Findings
     answer.lower_m = std::max(0.0, std::min({found.exact_lower_m, found.tolerated_lower_m,
                                              found.open_m, found.pruned_m}));
     const double open = std::min(found.open_m, found.dropped_m);
-    // The radius is less than `open`, where inexact faces may begin.
-    answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * (1.0 - 0x1p-52)) : -1.0;
+    answer.certified_radius_m = open > 0.0 ? std::min(reach_m, open * kJustBelow) : -1.0;
     const bool is_beyond = answer.lower_m > 0.0 && answer.lower_m == reach_m;
     const AnswerKind known = found.exact_lower_m <= std::max(found.tolerated_lower_m, 0.0)
                                  ? AnswerKind::exact

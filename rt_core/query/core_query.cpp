@@ -111,7 +111,7 @@ public:
         }
         const BlockSide& side = tree_.side(index);
         TACTUS_ASSERT(side.in_use);
-        core_.see(block.coordinates, corners_);
+        core_.measure_corners(block.coordinates, corners_);
         if (separations_ && is_apart(block, side))
         {
             return true;
@@ -189,7 +189,8 @@ private:
         budget_.spend(WorkCost::block_row);
         const double error = static_cast<double>(largest_error_quanta(side)) * quantum_;
         const double worth = worth_m() + error;
-        const double apart = separations_->see(block.coordinates, block.vertices, corners_, worth);
+        const double apart =
+            separations_->bound_all(block.coordinates, block.vertices, corners_, worth);
         if (apart > worth && lanes_above(side, tolerance_) != 0)
         {
             open_ = std::min(open_, apart - error);

@@ -226,8 +226,7 @@ void FaceDecision::take_bound(std::uint32_t lane, const FacePair& pair) noexcept
     ++way_number_;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-        // The factor keeps the length of the direction within 1.
-        way_[axis] = distances_.way[axis][lane] * (1.0F - 0x1p-20F);
+        way_[axis] = distances_.way[axis][lane] * kWayRoundedDown;
     }
 }
 

@@ -20,7 +20,6 @@ struct MeshPlacement
     {
         return place.local_to_world(here_m + offset_m);
     }
-    /// The inverse placement.
     [[nodiscard]] MeshPlacement inverse() const noexcept TACTUS_NONBLOCKING;
     /// Bound on the rounding error of local_to_world(), in metres of the other frame.
     [[nodiscard]] double rounding_m(const Vec3& here_m) const noexcept TACTUS_NONBLOCKING;

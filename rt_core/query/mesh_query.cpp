@@ -235,7 +235,7 @@ private:
             }
             if (near->tool != remembered_.tool || near->object != remembered_.object)
             {
-                walk.settle(test_blocks(*near));
+                walk.end_pair(test_blocks(*near));
             }
         }
         findings_.leave(static_cast<double>(walk.end()) * quantum_m_);
@@ -387,7 +387,7 @@ private:
             way[axis] = -(((middle - center.high[axis]) - center.low[axis]) * center.scale);
             length_sq += way[axis] * way[axis];
         }
-        const float share = length_sq > 0.0F ? (1.0F - 0x1p-20F) / std::sqrt(length_sq) : 0.0F;
+        const float share = length_sq > 0.0F ? kWayRoundedDown / std::sqrt(length_sq) : 0.0F;
         return {way[0] * share, way[1] * share, way[2] * share};
     }
 

@@ -78,7 +78,7 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
     PairWalk walk(own_, other_.tree(), views_, other_.budget(), start);
     if (unfinished != nullptr)
     {
-        go_on(*unfinished, walk);
+        resume(*unfinished, walk);
     }
     PairWalk::Sought sought{bound_};
     bool is_done = true; // False if the last pair of blocks was not tested completely.
@@ -113,7 +113,7 @@ void NearFaces::search(double bound_m, const PairWalk::Start& start, const Loose
 
 /// Continues an unfinished search, if both trees are unchanged. Its proven distances shrink by the
 /// other surface's motion and by the rounding of its new place.
-void NearFaces::go_on(UnfinishedSearch& unfinished, PairWalk& walk) noexcept
+void NearFaces::resume(UnfinishedSearch& unfinished, PairWalk& walk) noexcept
 {
     if (!unfinished.left.empty() && unfinished.own_change == own_.last_change() &&
         unfinished.other_change == other_.tree().last_change())
@@ -122,7 +122,7 @@ void NearFaces::go_on(UnfinishedSearch& unfinished, PairWalk& walk) noexcept
                               2.0 * static_cast<double>(views_.slack());
         const auto now = [&](double before_m)
         { return round_down_to_float(before_m * quanta_per_m_ / kRoundedUp - travel); };
-        walk.go_on_with(unfinished.left, travel);
+        walk.resume(unfinished.left, travel);
         bound_ = std::min(bound_, std::max(now(unfinished.bound_m), 0.0F));
         leave(std::min(bound_, now(unfinished.nearest_m)));
     }

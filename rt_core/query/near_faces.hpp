@@ -83,7 +83,7 @@ public:
 private:
     void search(double bound_m, const PairWalk::Start& start, const LooseFaces* loose,
                 UnfinishedSearch* unfinished) noexcept;
-    void go_on(UnfinishedSearch& unfinished, PairWalk& walk) noexcept;
+    void resume(UnfinishedSearch& unfinished, PairWalk& walk) noexcept;
     void keep(const PairWalk& walk, bool is_done, UnfinishedSearch& unfinished) const noexcept;
     [[nodiscard]] bool is_full() const noexcept
     {

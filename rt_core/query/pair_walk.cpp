@@ -17,11 +17,6 @@ namespace tactus
 namespace
 {
 
-/// Bound on the share of a coordinate that is lost when a double is split into two floats: 2^-48,
-/// rounded up.
-constexpr double kSplitRounding = 0x1p-46;
-constexpr double kLeastSlack = 0x1p-40;
-
 /// Largest travel of the tool for which entries are used, in quanta: no model is larger, and single
 /// precision is right to a quantum.
 constexpr double kMostTravel = 0x1p24;
@@ -137,7 +132,7 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
         return;
     }
     front_ = front;
-    if (can_go_on(surfaces))
+    if (can_resume(surfaces))
     {
         stack_.clear();
         read_ = PairFront::kRoom - front->count;
@@ -159,7 +154,7 @@ PairWalk::PairWalk(const AbTree& tool, const AbTree& object, const MeshViews& vi
 
 /// Adds the tool's travel since the last walk to the front. True if the front's entries are for the
 /// same trees and include everything requested.
-bool PairWalk::can_go_on(const Surfaces& surfaces) noexcept
+bool PairWalk::can_resume(const Surfaces& surfaces) noexcept
 {
     const MeshPlacement& place = surfaces.place;
     if (front_->count == 0 || front_->tool_change != tool_.last_change() ||
@@ -193,7 +188,7 @@ const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
         front_->leaves_open = front_->leaves_open || sought.leaves_open;
         limit_ = round_up_to_float(static_cast<double>(sought.bound) + front_->travel);
     }
-    for (bool has_more = true; has_more; has_more = go_on())
+    for (bool has_more = true; has_more; has_more = try_step())
     {
         while (!stack_.empty())
         {
@@ -221,7 +216,7 @@ const PairWalk::Item* PairWalk::next_blocks(const Sought& sought) noexcept
 
 /// Copies entries of the last walk up to the next one to be tested, which goes on the stack. False
 /// if there is none.
-bool PairWalk::go_on() noexcept
+bool PairWalk::try_step() noexcept
 {
     while (read_ != PairFront::kRoom)
     {
@@ -295,7 +290,7 @@ void PairWalk::keep(const Item& item) noexcept
     }
 }
 
-void PairWalk::settle(float gap) noexcept
+void PairWalk::end_pair(float gap) noexcept
 {
     if (front_ != nullptr && !has_overflowed_)
     {
@@ -305,7 +300,7 @@ void PairWalk::settle(float gap) noexcept
     }
 }
 
-void PairWalk::go_on_with(const LeftPairs& pairs, double travel) noexcept
+void PairWalk::resume(const LeftPairs& pairs, double travel) noexcept
 {
     TACTUS_ASSERT(front_ == nullptr);
     stack_.clear();
@@ -340,7 +335,7 @@ float PairWalk::end() noexcept
         left = std::min(left, item.gap);
         keep(item);
     }
-    while (go_on())
+    while (try_step())
     {
         const Item item = stack_.pop_back();
         left = std::min(left, item.gap);

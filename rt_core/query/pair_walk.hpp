@@ -118,7 +118,7 @@ public:
     /// budget is spent.
     [[nodiscard]] const Item* next_blocks(const Sought& sought) noexcept TACTUS_NONBLOCKING;
     /// Records a lower bound on the distance of the last pair of next_blocks(), less errors.
-    void settle(float gap) noexcept TACTUS_NONBLOCKING;
+    void end_pair(float gap) noexcept TACTUS_NONBLOCKING;
 
     /// Pair that an earlier walk of the same boxes had not visited.
     struct Left
@@ -131,7 +131,7 @@ public:
     using LeftPairs = StaticVector<Left, kMostLeft>;
     /// Starts the walk with `pairs` instead of the roots; the pairs may have come nearer by
     /// `travel`.
-    void go_on_with(const LeftPairs& pairs, double travel) noexcept TACTUS_NONBLOCKING;
+    void resume(const LeftPairs& pairs, double travel) noexcept TACTUS_NONBLOCKING;
     /// Stores the unvisited pairs in `pairs`. `is_done` is false if the last pair of next_blocks()
     /// is among them.
     void keep_left(bool is_done, LeftPairs& pairs) const noexcept TACTUS_NONBLOCKING;
@@ -151,8 +151,8 @@ private:
     static constexpr std::uint32_t kDepths = 2 * kTreeLevels + 2;
 
     [[nodiscard]] bool is_wanted(TreeRef tool) const noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] bool can_go_on(const Surfaces& surfaces) noexcept TACTUS_NONBLOCKING;
-    [[nodiscard]] bool go_on() noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool can_resume(const Surfaces& surfaces) noexcept TACTUS_NONBLOCKING;
+    [[nodiscard]] bool try_step() noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] bool skip_dropped() noexcept TACTUS_NONBLOCKING;
     [[nodiscard]] Item item_of(const PairFront::Entry& entry) const noexcept TACTUS_NONBLOCKING;
     void write(const PairFront::Entry& entry) noexcept TACTUS_NONBLOCKING;

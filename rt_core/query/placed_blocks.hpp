@@ -20,6 +20,8 @@ struct MeshPlacement;
 
 /// Factor that makes the rounded sum of two lengths an upper bound.
 inline constexpr float kSumRoundedUp = 1.0F + 0x1p-22F;
+/// Factor that keeps the length of a direction, computed in single precision, within 1.
+inline constexpr float kWayRoundedDown = 1.0F - 0x1p-20F;
 
 /// Block of the tool, placed in the object's frame; without an index it is empty.
 struct PlacedBlock // NOLINT(cppcoreguidelines-pro-type-member-init): written where the index is.

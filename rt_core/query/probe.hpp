@@ -13,6 +13,12 @@
 namespace tactus
 {
 
+/// Bound on the share of a coordinate that is lost when a double is split into two floats: 2^-48,
+/// rounded up.
+inline constexpr double kSplitRounding = 0x1p-46;
+/// Least slack of a split place, in quanta, for coordinates near zero.
+inline constexpr double kLeastSlack = 0x1p-40;
+
 /// True if a coordinate is kFarQuanta or more from the origin.
 [[nodiscard]] inline bool is_beyond_kernels(const Vec3& point_m, float quantum_m) noexcept
 {
@@ -38,8 +44,8 @@ namespace tactus
         largest = std::max(largest, std::abs(value));
     }
     probe.scale = 1.0F / quantum_m;
-    // Two roundings leave less than 2^-48 of each coordinate.
-    probe.slack = round_up_to_float(largest * static_cast<double>(probe.scale) * 0x1p-46 + 0x1p-40);
+    probe.slack = round_up_to_float(largest * static_cast<double>(probe.scale) * kSplitRounding +
+                                    kLeastSlack);
     return probe;
 }
 

@@ -187,10 +187,10 @@ private:
             }
             if (batch.count > BlockBatch::kFull)
             {
-                look_at(batch);
+                test_unknown(batch);
             }
         }
-        look_at(batch);
+        test_unknown(batch);
         for (; next < frontier.count; ++next)
         {
             leave(frontier.gaps[next]);
@@ -262,7 +262,7 @@ private:
     }
 
     /// Tests all blocks of the batch except the known ones, and empties the batch.
-    void look_at(BlockBatch& batch) noexcept
+    void test_unknown(BlockBatch& batch) noexcept
     {
         const std::uint32_t granted = budget_.take_nodes(batch.count);
         for (std::uint32_t i = granted; i < batch.count; ++i)

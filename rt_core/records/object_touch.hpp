@@ -3,11 +3,15 @@
 #pragma once
 
 #include "rt_core/base/static_vector.hpp"
+#include "rt_core/geometry/object_speed_limit.hpp"
 #include "rt_core/limits.hpp"
+#include "rt_core/math/similarity.hpp"
 #include "rt_core/math/vec3.hpp"
 #include "rt_core/records/frame_output.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 
 // Usable on any thread: plain values and pure functions. No call waits or allocates.
 namespace tactus
@@ -24,6 +28,23 @@ struct ObjectTouch
     bool is_in_reach{true}; ///< True if the object may reach the tool in this frame.
 };
 using ObjectTouches = StaticVector<ObjectTouch, kMaxPairs>;
+
+/// Largest displacement, in metres, that a move of the object causes where a tool may meet it; 0 if
+/// no touch is the object's.
+[[nodiscard]] inline double way_at_touches_m(std::span<const ObjectTouch> touches,
+                                             std::uint32_t object, const Similarity& from,
+                                             const Similarity& to) noexcept
+{
+    double way_m = 0.0;
+    for (const ObjectTouch& touch : touches)
+    {
+        if (touch.object == object)
+        {
+            way_m = std::max(way_m, way_in_sphere_m(from, to, touch.place_m, touch.radius_m));
+        }
+    }
+    return way_m;
+}
 
 /// Distance beyond a tool's radius for its displacement in a frame and for the skin of a tool
 /// without a radius.

@@ -37,14 +37,14 @@ Coarsener::Coarsener(VertexForest& forest, PageTable& pages, const RefineScratch
     heads_.fill(kNoRecord);
 }
 
-void Coarsener::follow(double farthest_m) noexcept
+void Coarsener::add_travel(double farthest_m) noexcept
 {
     TACTUS_ASSERT(farthest_m >= 0.0);
     travel_ += farthest_m;
 }
 
 /// Increases the travel so that every record in the wheel is due.
-void Coarsener::look_at_all() noexcept
+void Coarsener::mark_all_due() noexcept
 {
     travel_ += horizon_m_;
 }
@@ -58,8 +58,8 @@ void Coarsener::forget_all() noexcept
     travel_ = 0.0;
 }
 
-void Coarsener::look_when_left(std::uint32_t slot, RecordId id, const VsplitRecord& record,
-                               std::span<const RefineRequest> requests) noexcept
+void Coarsener::list_refined(std::uint32_t slot, RecordId id, const VsplitRecord& record,
+                             std::span<const RefineRequest> requests) noexcept
 {
     TACTUS_ASSERT(slot < waits_.size());
     if (horizon_m_ == 0.0)
@@ -130,7 +130,7 @@ void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budg
             }
             const Place place{head / kRecordsPerChunk, head % kRecordsPerChunk};
             head = waits_[place.slot].next[place.record];
-            look_at(place, requests, work);
+            examine(place, requests, work);
         }
         if (cursor_ >= now)
         {
@@ -141,7 +141,7 @@ void Coarsener::run(std::span<const RefineRequest> requests, const Budgets& budg
 
 /// Checks a record taken from the wheel: merges it, lists it where it is due next, or leaves it
 /// unlisted while it is held or others refined its faces further.
-void Coarsener::look_at(const Place& place, std::span<const RefineRequest> requests,
+void Coarsener::examine(const Place& place, std::span<const RefineRequest> requests,
                         WorkCounters& work) noexcept
 {
     PageWaits& waits = waits_[place.slot];
@@ -181,7 +181,7 @@ void Coarsener::look_at(const Place& place, std::span<const RefineRequest> reque
     }
 }
 
-void Coarsener::look_soon(RecordId record) noexcept
+void Coarsener::mark_due(RecordId record) noexcept
 {
     list(place_of(record), cursor_);
 }

@@ -42,14 +42,14 @@ public:
 
     /// Adds `farthest_m` to the travel: a bound on every question's motion since the last frame,
     /// plus the shrinkage of its keep distance.
-    void follow(double farthest_m) noexcept TACTUS_NONBLOCKING;
+    void add_travel(double farthest_m) noexcept TACTUS_NONBLOCKING;
     /// Makes every record due, because the questions changed.
-    void look_at_all() noexcept TACTUS_NONBLOCKING;
+    void mark_all_due() noexcept TACTUS_NONBLOCKING;
     /// Lists a record that was just refined; `slot` is its page's.
-    void look_when_left(std::uint32_t slot, RecordId id, const VsplitRecord& record,
-                        std::span<const RefineRequest> requests) noexcept TACTUS_NONBLOCKING;
+    void list_refined(std::uint32_t slot, RecordId id, const VsplitRecord& record,
+                      std::span<const RefineRequest> requests) noexcept TACTUS_NONBLOCKING;
     /// Lists a record that is no longer held: due at once, unless it is in a bucket already.
-    void look_soon(RecordId record) noexcept TACTUS_NONBLOCKING;
+    void mark_due(RecordId record) noexcept TACTUS_NONBLOCKING;
 
     /// Resets the wheel; no record may be refined any more (VertexForest::leave()).
     void forget_all() noexcept TACTUS_NONBLOCKING;
@@ -83,7 +83,7 @@ private:
     void set_up_wheel(std::span<const RefineRequest> requests) noexcept;
     void list(const Place& place, std::int64_t bucket) noexcept;
     void list_when_left(const Place& place, double slack_m) noexcept;
-    void look_at(const Place& place, std::span<const RefineRequest> requests,
+    void examine(const Place& place, std::span<const RefineRequest> requests,
                  WorkCounters& work) noexcept;
     [[nodiscard]] double slack_of(const VsplitRecord& record,
                                   std::span<const RefineRequest> requests) const noexcept;

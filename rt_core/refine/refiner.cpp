@@ -139,7 +139,7 @@ void Refiner::begin(std::span<const RefineRequest> requests, const Budgets& budg
             release(*request.closure);
         }
     }
-    follow();
+    update_certificates();
     const std::uint32_t merges_before = work.merges;
     Budgets within = budgets;
     within.merges = std::min(budgets.merges, kMaxMergesPerFrame);
@@ -202,7 +202,7 @@ bool Refiner::gather(const RefineRequest& request, SplitLimits limits, std::uint
 
 /// Lowers certificates by their questions' motion, and adds the largest motion to the coarsener's
 /// travel.
-void Refiner::follow() noexcept
+void Refiner::update_certificates() noexcept
 {
     double farthest = 0.0;
     std::size_t count = 0;
@@ -211,18 +211,19 @@ void Refiner::follow() noexcept
                       [&](const RefineQuestion& question)
                       {
                           ++count;
-                          follow(question, farthest, is_same);
+                          update_certificate(question, farthest, is_same);
                       });
     is_same = is_same && count == question_count_;
     question_count_ = count;
-    coarsener_.follow(farthest);
+    coarsener_.add_travel(farthest);
     if (!is_same)
     {
-        coarsener_.look_at_all();
+        coarsener_.mark_all_due();
     }
 }
 
-void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& is_same) noexcept
+void Refiner::update_certificate(const RefineQuestion& question, double& farthest_m,
+                                 bool& is_same) noexcept
 {
     TACTUS_ASSERT(question.memory != nullptr);
     TACTUS_ASSERT(question.reach_m >= 0.0);
@@ -251,7 +252,7 @@ void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& i
     memory.certified_m = tree_->is_complete() ? memory.certified_m - moved : 0.0;
     if (question.unfinished != nullptr)
     {
-        follow(moved, question.reach_m - question.span_m, *question.unfinished);
+        drop_outdated_search(moved, question.reach_m - question.span_m, *question.unfinished);
     }
     memory.center_m = question.center_m;
     memory.keep_m = question.keep_m;
@@ -259,7 +260,8 @@ void Refiner::follow(const RefineQuestion& question, double& farthest_m, bool& i
 
 /// Drops an unfinished search whose bound, less the motion since, does not cover the needed
 /// distance.
-void Refiner::follow(double moved_m, double needed_m, UnfinishedSearch& unfinished) noexcept
+void Refiner::drop_outdated_search(double moved_m, double needed_m,
+                                   UnfinishedSearch& unfinished) noexcept
 {
     unfinished.moved_m += moved_m;
     if (!(unfinished.bound_m - unfinished.moved_m > needed_m))
@@ -517,8 +519,8 @@ Refiner::ClosureOutcome Refiner::split_with_closure(RecordId target,
             TACTUS_ASSERT(done_count_ < done_.size());
             done_[done_count_++] = id;
             --depth;
-            coarsener_.look_when_left(slot, id, *record,
-                                      is_filling_ ? std::span<const RefineRequest>{} : requests_);
+            coarsener_.list_refined(slot, id, *record,
+                                    is_filling_ ? std::span<const RefineRequest>{} : requests_);
             consider_star(id, *record, star, own, limit - work.splits);
         }
     }
@@ -760,7 +762,7 @@ void Refiner::release(Closure& closure) noexcept
     {
         HeldRecord& held = scratch_->held[closure.first_held];
         pages_->set_held(held.record, false);
-        coarsener_.look_soon(held.record);
+        coarsener_.mark_due(held.record);
         std::swap(closure.first_held, held.next);
         std::swap(held.next, scratch_->free_held);
     }

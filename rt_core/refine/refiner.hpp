@@ -104,9 +104,11 @@ private:
         blocked, ///< A record isn't resident yet, or is refused.
     };
 
-    void follow() noexcept;
-    void follow(const RefineQuestion& question, double& farthest_m, bool& is_same) noexcept;
-    static void follow(double moved_m, double needed_m, UnfinishedSearch& unfinished) noexcept;
+    void update_certificates() noexcept;
+    void update_certificate(const RefineQuestion& question, double& farthest_m,
+                            bool& is_same) noexcept;
+    static void drop_outdated_search(double moved_m, double needed_m,
+                                     UnfinishedSearch& unfinished) noexcept;
     [[nodiscard]] bool gather(const RefineRequest& request, SplitLimits limits,
                               std::uint32_t enough, const Budgets& budgets, WorkCounters& work,
                               FrameFault& found) noexcept;

@@ -20,6 +20,8 @@ constexpr std::uint32_t kFullWait = 8;
 /// Error of a distance between two places, as a share of their coordinates: about ten roundings by
 /// 1.1e-16.
 constexpr double kGapRounding = 2e-15;
+/// Factor on a squared distance, far above its roundings, with which a sphere is still examined.
+constexpr double kSquareWidened = 1.0 + 1e-9;
 
 double size_of(const Vec3& place) noexcept
 {
@@ -102,7 +104,7 @@ void BroadPhase::remove(std::uint32_t object) noexcept
     }
 }
 
-void BroadPhase::look(std::uint32_t tool, const Vec3& center_m, double near_m) noexcept
+void BroadPhase::move_tool(std::uint32_t tool, const Vec3& center_m, double near_m) noexcept
 {
     TACTUS_ASSERT(tool < tool_count_);
     TACTUS_ASSERT(near_m >= 0.0);
@@ -198,7 +200,7 @@ void BroadPhase::search(const Group& group, std::uint32_t first, const ToolRange
         const Sphere& sphere = spheres_[i];
         const double square = (center - sphere.center).squaredNorm();
         const double far = std::max(found.wide_m, found.after_m) + sphere.radius;
-        if (sphere.radius < 0.0 || square > far * far * (1.0 + 1e-9))
+        if (sphere.radius < 0.0 || square > far * far * kSquareWidened)
         {
             continue;
         }

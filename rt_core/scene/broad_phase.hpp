@@ -41,9 +41,10 @@ public:
 
     /// Sets a tool's centre in this frame, and the distance `near_m` >= 0 within which its list
     /// should hold all objects.
-    void look(std::uint32_t tool, const Vec3& center_m, double near_m) noexcept TACTUS_NONBLOCKING;
+    void move_tool(std::uint32_t tool, const Vec3& center_m,
+                   double near_m) noexcept TACTUS_NONBLOCKING;
     void forget(std::uint32_t tool) noexcept TACTUS_NONBLOCKING;
-    /// Walks for tools whose clearance is used up; called after look() for each tool.
+    /// Walks for tools whose clearance is used up; called after move_tool() for each tool.
     void walk() noexcept TACTUS_NONBLOCKING;
 
     /// Objects on the tool's list, by their numbers, always including the nearest of its last walk;
@@ -62,7 +63,7 @@ public:
     /// Number, above 0, that changes with every change of a list.
     [[nodiscard]] std::uint32_t lists() const noexcept { return lists_; }
     [[nodiscard]] std::uint32_t objects() const noexcept { return count_; }
-    /// Walks since the last look(); below, objects that they checked.
+    /// Walks since the last move_tool(); below, objects that they checked.
     [[nodiscard]] std::uint32_t walks() const noexcept { return walks_; }
     [[nodiscard]] std::uint32_t looked_at() const noexcept { return looked_at_; }
 

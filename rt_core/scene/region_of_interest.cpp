@@ -17,8 +17,8 @@ constexpr double kLeastApproach = 0.1;
 
 } // namespace
 
-void RegionOfInterest::look(const ToolSpec& tool, const ToolPlacement& placement,
-                            const ObjectPose& pose) noexcept
+void RegionOfInterest::update(const ToolSpec& tool, const ToolPlacement& placement,
+                              const ObjectPose& pose) noexcept
 {
     TACTUS_ASSERT(placement.reach_m >= 0.0);
     TACTUS_ASSERT(pose.scale > 0.0);

@@ -33,8 +33,8 @@ public:
     static constexpr double kKeepFactor = 1.25;
 
     /// Sets the tool's place relative to the object, and the pair's range, for this frame.
-    void look(const ToolSpec& tool, const ToolPlacement& placement,
-              const ObjectPose& pose) noexcept TACTUS_NONBLOCKING;
+    void update(const ToolSpec& tool, const ToolPlacement& placement,
+                const ObjectPose& pose) noexcept TACTUS_NONBLOCKING;
     /// Keeps the pair awake even if the last distance proves that nothing is in range.
     void wake() noexcept { is_asleep_ = false; }
     /// Keeps a query's answer, which holds for the present place.

@@ -73,7 +73,7 @@ void Linker::link_page(ChunkId chunk, std::uint32_t slot) noexcept
     TACTUS_ASSERT(inserted);
     for (std::uint32_t place = 0; place < records_in_chunk(counts_, chunk); ++place)
     {
-        settle((slot << kRecordsPerChunkLog2) + place);
+        link_or_wait((slot << kRecordsPerChunkLog2) + place);
     }
 }
 
@@ -173,7 +173,7 @@ void Linker::owe_nothing(std::uint32_t slot) noexcept
 
 /// Links the record if nothing is missing, then those that waited for it, and so on. Every turn
 /// takes a record off a list and at most puts it back for a later dependency, so this ends.
-void Linker::settle(Seat seat) noexcept
+void Linker::link_or_wait(Seat seat) noexcept
 {
     TACTUS_ASSERT(ready_ == kNoSeat);
     TACTUS_ASSERT(!waiting_[seat].is_in_list());

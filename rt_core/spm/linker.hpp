@@ -160,7 +160,7 @@ private:
         bool is_empty{true};
     };
 
-    void settle(Seat seat) noexcept;
+    void link_or_wait(Seat seat) noexcept;
     [[nodiscard]] bool try_link(Seat seat) noexcept;
     void link(Seat seat, const VsplitRecord& record, const StarRing& ring) noexcept;
     void repair_next(Seat seat) noexcept;

@@ -25,6 +25,11 @@ constexpr std::size_t kPatchFaces = 48;
 constexpr std::size_t kLeastPatchFaces = 8;
 
 constexpr double kStepsInEdge = 16.0;
+/// Distance from a multiple of the step, in steps, that counts as one; float's rounding is added.
+constexpr double kStepSlack = 1e-5;
+constexpr double kFloatSpacing = 0x1p-23;
+/// Rounding, in steps, from which multiples of the step are no longer recognized.
+constexpr double kCoarsestRounding = 0.25;
 /// Shares of the edges and of the patches that may need a finer grid than the chosen one.
 constexpr double kShortEdges = 0.01;
 constexpr double kFlatterPatches = 0.2;
@@ -55,8 +60,8 @@ void visit_spread(std::size_t count, std::size_t most, const Visit& visit)
 bool is_multiple(double value, double step)
 {
     const double steps = value / step;
-    const double rounding = 1e-5 + std::abs(steps) * 0x1p-23;
-    return rounding < 0.25 && std::abs(steps - std::round(steps)) <= rounding;
+    const double rounding = kStepSlack + std::abs(steps) * kFloatSpacing;
+    return rounding < kCoarsestRounding && std::abs(steps - std::round(steps)) <= rounding;
 }
 
 /// Largest power of ten not above a value > 0, by repeated multiplication: the same on every

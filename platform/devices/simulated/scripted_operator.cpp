@@ -20,6 +20,9 @@ constexpr double kSteerUntilDiag = 0.05;
 /// Mean speed of the flight, including start and end, as a share of its largest speed.
 constexpr double kMeanSpeedShare = 0.8;
 constexpr double kGateReachedDiag = 0.02;
+/// Part of the way to the gate across the outward direction, in distances from the centre, up to
+/// which the gate lies opposite.
+constexpr double kOppositeShare = 1e-3;
 /// Distance past the aim, in diagonals, at which a site is given up.
 constexpr double kApproachBeyondDiag = 0.5;
 constexpr double kLiftRadii = 3.0;
@@ -175,7 +178,7 @@ Vec3 ScriptedOperator::fly() noexcept
     }
     const Vec3 along = part_across(to_gate, outward);
     // Opposite to the gate all directions are equally long.
-    const bool opposite = along.norm() < 1e-3 * radius_m && to_gate.dot(outward) < 0.0;
+    const bool opposite = along.norm() < kOppositeShare * radius_m && to_gate.dot(outward) < 0.0;
     const Vec3 tangent = opposite ? any_across(outward) : direction_or_zero(along);
     const double climb = kClimbPerS * (site().orbit_radius_m - radius_m);
     const double speed = pace_.flight_m_per_s;

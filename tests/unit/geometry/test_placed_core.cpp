@@ -212,7 +212,7 @@ TEST(PlacedCore, bounds_triangles_that_share_corners_and_proves_planes_between)
             }
         }
         CornersAtCore seen;
-        sut.see(corners, seen);
+        sut.measure_corners(corners, seen);
         for (std::uint8_t i = 0; i + 2U < CornersAtCore::kCorners; i += 3)
         {
             Triangle triangle;

@@ -87,7 +87,7 @@ struct SeparationsTest : ::testing::Test
                 block_.put(place, middle + random.in_cube(0.5));
             }
         }
-        core_.see(block_.rows, seen_);
+        core_.measure_corners(block_.rows, seen_);
     }
     /// Three separate corners, at `away` from the hull.
     void make_far(Random& random, const Vec3& away)
@@ -98,11 +98,11 @@ struct SeparationsTest : ::testing::Test
         {
             block_.put(place, core_.center() + away + random.in_cube(0.5));
         }
-        core_.see(block_.rows, seen_);
+        core_.measure_corners(block_.rows, seen_);
     }
     [[nodiscard]] double see(Separations& sut, double enough = kInfinity) const
     {
-        return sut.see(block_.rows, block_.used, seen_, enough);
+        return sut.bound_all(block_.rows, block_.used, seen_, enough);
     }
     [[nodiscard]] std::array<std::uint8_t, 3> any_triangle(Random& random) const
     {

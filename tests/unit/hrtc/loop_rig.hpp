@@ -179,7 +179,7 @@ struct LoopRig
         if (options_.front_slots)
         {
             front_.emplace(frame().pools().cache.pages, *options_.front_slots);
-            parts.front = &*front_;
+            parts.refinement_state = &*front_;
         }
         parts.budgets.splits = kMaxSplitsPerFrame;
         loop_.emplace(parts, statistics_);

@@ -134,7 +134,7 @@ void expect_proofs(std::uint64_t seed, std::uint32_t objects, std::uint32_t tool
             }
             centers[i] =
                 random.below(60) == 0 ? random.in_cube(world_m) : Vec3(centers[i] + ways[i]);
-            crowd.sut.look(i, centers[i], near_m);
+            crowd.sut.move_tool(i, centers[i], near_m);
         }
         crowd.sut.walk();
         ASSERT_LE(crowd.sut.walks(), kBroadWalks);
@@ -179,14 +179,14 @@ TEST(BroadPhase, names_what_is_near_and_proves_that_nothing_else_is)
 TEST(BroadPhase, of_nothing_is_clear_for_ever)
 {
     Crowd crowd(8, 2);
-    crowd.sut.look(0, Vec3(0, 0, 0), 1.0);
+    crowd.sut.move_tool(0, Vec3(0, 0, 0), 1.0);
     EXPECT_LT(crowd.sut.clear_m(0), 0.0);
     crowd.sut.walk();
     EXPECT_TRUE(crowd.near(0).empty());
     EXPECT_EQ(crowd.sut.clear_m(0), kInfinity);
     for (int i = 0; i < 100; ++i)
     {
-        crowd.sut.look(0, Vec3(i, 0, 0), 1.0);
+        crowd.sut.move_tool(0, Vec3(i, 0, 0), 1.0);
         crowd.sut.walk();
         ASSERT_EQ(crowd.sut.walks(), 0U);
     }
@@ -199,13 +199,13 @@ TEST(BroadPhase, at_rest_walks_once_and_lists_the_nearest_however_far)
     {
         crowd.place(i, {Vec3(10.0 + i, 0.0, 0.0), 0.5});
     }
-    crowd.sut.look(0, Vec3(0, 0, 0), 1.0);
+    crowd.sut.move_tool(0, Vec3(0, 0, 0), 1.0);
     crowd.sut.walk();
     EXPECT_EQ(crowd.near(0), std::vector<std::uint32_t>{0});
     EXPECT_NEAR(crowd.sut.clear_m(0), 10.5, 1e-12);
     for (int i = 0; i < 100; ++i)
     {
-        crowd.sut.look(0, Vec3(0, 0, 0), 1.0);
+        crowd.sut.move_tool(0, Vec3(0, 0, 0), 1.0);
         crowd.sut.walk();
         ASSERT_EQ(crowd.sut.walks(), 0U);
         ASSERT_EQ(crowd.sut.looked_at(), 0U);
@@ -222,7 +222,7 @@ TEST(BroadPhase, leaves_out_groups_that_are_far)
     {
         crowd.place(i, {Vec3(0.1 * i, 0.0, 0.0), 0.01});
     }
-    crowd.sut.look(0, Vec3(0, 0, 0), 0.5);
+    crowd.sut.move_tool(0, Vec3(0, 0, 0), 0.5);
     crowd.sut.walk();
     EXPECT_EQ(crowd.sut.looked_at(), 64U);
 }
@@ -236,7 +236,7 @@ TEST(BroadPhase, with_more_round_a_tool_than_fits_lists_the_nearest_and_is_clear
         {
             crowd.place((i * 7) % round, {Vec3(0.01 * ((i * 7) % round), 0.0, 0.0), 0.001});
         }
-        crowd.sut.look(0, Vec3(0, 0, 0), 10.0);
+        crowd.sut.move_tool(0, Vec3(0, 0, 0), 10.0);
         crowd.sut.walk();
         const std::uint32_t listed = std::min(round, kMaxNear);
         ASSERT_EQ(crowd.near(0).size(), listed);
@@ -251,7 +251,7 @@ TEST(BroadPhase, with_more_round_a_tool_than_fits_lists_the_nearest_and_is_clear
         std::uint32_t walks = 0;
         for (int i = 0; i < 80; ++i)
         {
-            crowd.sut.look(0, Vec3(0, 0, 0), 10.0);
+            crowd.sut.move_tool(0, Vec3(0, 0, 0), 10.0);
             crowd.sut.walk();
             walks += crowd.sut.walks();
         }

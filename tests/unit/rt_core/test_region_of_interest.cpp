@@ -35,7 +35,7 @@ DistanceAnswer exact_answer(double distance)
 void look(RegionOfInterest& sut, const Vec3& position_m, double reach_m,
           const ObjectPose& pose = {})
 {
-    sut.look(ToolSpec{}, {{Mat3::Identity(), position_m, 1.0}, reach_m, Vec3(0, 0, 0)}, pose);
+    sut.update(ToolSpec{}, {{Mat3::Identity(), position_m, 1.0}, reach_m, Vec3(0, 0, 0)}, pose);
 }
 
 } // namespace
