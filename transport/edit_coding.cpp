@@ -19,7 +19,7 @@ namespace tactus
 namespace
 {
 
-using GridPoint = std::array<std::uint32_t, 3>;
+using CodedPoint = std::array<std::uint32_t, 3>;
 
 /// End of the buckets: a face's path has 31 bits for its bucket.
 constexpr std::uint32_t kBucketEnd = 1U << 31U;
@@ -45,9 +45,9 @@ std::uint32_t read_grid(ByteReader& reader)
     return low | static_cast<std::uint32_t>(reader.read<std::uint16_t>()) << 8U;
 }
 
-GridPoint on_grid(const Vec3f& corner_m, const ModelHeader& header)
+CodedPoint on_grid(const Vec3f& corner_m, const ModelHeader& header)
 {
-    GridPoint point{};
+    CodedPoint point{};
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
         const float quanta = corner_m[axis] / header.quantum_m();
@@ -188,14 +188,14 @@ void encode_edit(const EditContent& edit, const ModelHeader& header, std::vector
 {
     TACTUS_ASSERT(edit.removed.size() <= kMaxSumFaces);
     TACTUS_ASSERT(edit.added.size() <= kMaxSumFaces);
-    std::map<GridPoint, std::uint16_t> numbers;
-    std::vector<GridPoint> vertices;
+    std::map<CodedPoint, std::uint16_t> numbers;
+    std::vector<CodedPoint> vertices;
     std::vector<std::uint16_t> corners;
     for (const AddedFace& face : edit.added)
     {
         for (const Vec3f& corner_m : face.corners_m)
         {
-            const GridPoint point = on_grid(corner_m, header);
+            const CodedPoint point = on_grid(corner_m, header);
             const auto [known, is_new] =
                 numbers.emplace(point, static_cast<std::uint16_t>(vertices.size()));
             corners.push_back(known->second);
@@ -221,7 +221,7 @@ void encode_edit(const EditContent& edit, const ModelHeader& header, std::vector
             std::ranges::for_each(corner, [&](float coordinate) { put(coded, coordinate); });
         }
     }
-    for (const GridPoint& point : vertices)
+    for (const CodedPoint& point : vertices)
     {
         std::ranges::for_each(point, [&](std::uint32_t quanta) { put_grid(coded, quanta); });
     }

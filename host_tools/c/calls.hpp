@@ -24,14 +24,15 @@
 namespace tactus::c_calls
 {
 
-/// Ranges of the calls. They are wider than those of hrtc's options, which a device and a user
-/// limit: a caller of C may simulate any tool.
+// Ranges of the calls. They are wider than those of hrtc's options, which a device and a user
+// limit: a caller of C may simulate any tool.
+
 /// Least stiffness in N/m, and least limit of a force in N.
-inline constexpr double kSmallestLimit = 1e-3;
+inline constexpr double kSmallestValue = 1e-3;
 /// Least speed limit in m/s.
 inline constexpr double kSlowest_m_per_s = 1e-6;
 /// Largest stiffness, force, torque and speed, each in its SI unit.
-inline constexpr double kLargestLimit = 1e6;
+inline constexpr double kLargestValue = 1e6;
 
 /// Exception for a fault; the call returns `result` and writes `text`.
 struct Fault
@@ -211,7 +212,7 @@ inline Material material_of(const tactus_material& from)
     Material material;
     if (from.stiffness_n_per_m != 0.0)
     {
-        check_range(from.stiffness_n_per_m, kSmallestLimit, kLargestLimit,
+        check_range(from.stiffness_n_per_m, kSmallestValue, kLargestValue,
                     "material.stiffness_n_per_m");
         material.stiffness_n_per_m = from.stiffness_n_per_m;
     }

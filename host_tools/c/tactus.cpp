@@ -113,10 +113,10 @@ ToolSpec tool_of(const tactus_tool& tool, std::size_t index)
     check_range(tool.shape, TACTUS_SPHERE, TACTUS_BOX, name + "shape");
     const double largest_m = tool.query_only != 0 ? 1e3 : 1.0; // No tool of a hand is larger.
     check_range(tool.radius_m, 1e-6, largest_m, name + "radius_m");
-    check_range(tool.stiffness_n_per_m, kSmallestLimit, kLargestLimit, name + "stiffness_n_per_m");
-    check_range(tool.force_max_n, kSmallestLimit, kLargestLimit, name + "force_max_n");
-    check_range(tool.torque_max_nm, 0.0, kLargestLimit, name + "torque_max_nm");
-    check_range(tool.speed_max_m_per_s, kSlowest_m_per_s, kLargestLimit,
+    check_range(tool.stiffness_n_per_m, kSmallestValue, kLargestValue, name + "stiffness_n_per_m");
+    check_range(tool.force_max_n, kSmallestValue, kLargestValue, name + "force_max_n");
+    check_range(tool.torque_max_nm, 0.0, kLargestValue, name + "torque_max_nm");
+    check_range(tool.speed_max_m_per_s, kSlowest_m_per_s, kLargestValue,
                 name + "speed_max_m_per_s");
     check_range(tool.shading_m, tool.shading_m == 0.0 ? 0.0 : kShadingWidthMin_m,
                 kShadingWidthMax_m, name + "shading_m");
@@ -189,7 +189,7 @@ void read_setup(const tactus_setup& from, Scene& scene)
     check_range(from.tool_count, 1, kMaxTools, "setup.tool_count");
     check_range(from.object_count, 1, kMaxObjects, "setup.object_count");
     check_range(static_cast<double>(from.period_ns), 1e4, 1e9, "setup.period_ns");
-    check_range(from.object_speed_max_m_per_s, kSlowest_m_per_s, kLargestLimit,
+    check_range(from.object_speed_max_m_per_s, kSlowest_m_per_s, kLargestValue,
                 "setup.object_speed_max_m_per_s");
     for (std::uint32_t i = 0; i < from.model_count; ++i)
     {

@@ -272,8 +272,6 @@ Result<std::string, Refusal> cut_bytes(const DecodedModel& model,
 namespace
 {
 
-static_assert(std::endian::native == std::endian::little);
-
 struct alignas(Arena::kAlignment) Line
 {
     std::array<std::byte, Arena::kAlignment> bytes;

@@ -78,13 +78,14 @@ void touch_new_page() noexcept
     }
 }
 
-/// Sleeps until the processor was really yielded. On a waiting virtual machine, a sleep may end
-/// before it begins and yield nothing.
+/// Sleeps until the processor was really yielded: twice, as one switch may count as the wait of a
+/// page fault of the frame. On a waiting virtual machine, a sleep may end before it begins and
+/// yield nothing.
 void give_way() noexcept
 {
     constexpr int kTriesMax = 100;
-    const std::int64_t before = read_thread_usage().voluntary_switches;
-    for (int i = 0; i < kTriesMax && read_thread_usage().voluntary_switches == before; ++i)
+    const std::int64_t wanted = read_thread_usage().voluntary_switches + 2;
+    for (int i = 0; i < kTriesMax && read_thread_usage().voluntary_switches < wanted; ++i)
     {
         const timespec time{0, kSleep_ns};
         nanosleep(&time, nullptr);

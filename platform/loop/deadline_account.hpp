@@ -45,8 +45,8 @@ enum class CycleFlag : std::uint16_t
     none = 0,
     page_fault = 1U << 0U, ///< The loop touched memory that was not resident.
     allocation = 1U << 1U, ///< The loop called the heap.
-    /// The loop slept or waited outside the timer's sleeps. A page fault waits once, for a page
-    /// that the kernel moves: Linux counts that as a voluntary switch.
+    /// The loop slept or waited outside the timer's sleeps. A page fault may wait for a page that
+    /// the kernel moves, which Linux counts as a voluntary switch: one a fault is not counted.
     gave_way = 1U << 2U,
     system_call = 1U << 3U, ///< The frame made a system call; set only with --trap-system-calls.
     over_work = 1U << 4U,   ///< The frame did more than its budgets allow.

@@ -71,7 +71,7 @@ private:
     };
 
     template <typename Change>
-    bool try_change(Key object, const Change& change);
+    [[nodiscard]] bool try_change(Key object, const Change& change);
     [[nodiscard]] Slot* find(Key object);
     [[nodiscard]] const Slot* find(Key object) const;
     void queue(std::uint32_t number);

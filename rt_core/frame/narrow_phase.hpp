@@ -21,8 +21,9 @@ struct FrameSetup;
 ///
 /// Pairs are served by priority, and later pairs share what is left of the frame's traversals and
 /// memory for triangles. Pairs of mesh tools use neither: they have an allowance of their own
-/// (kMeshBudgetFactor). Haptic thread. Cost: linear in the nodes and triangles near each tool, at
-/// most Budgets::nodes and `triangles` a pair and 8 times as many in all.
+/// (kMeshBudgetFactor). Haptic thread. Cost: linear in the nodes and triangles near each tool;
+/// besides mesh tools at most Budgets::nodes and `triangles` a pair, and kFrameWalks times as many
+/// in all.
 class NarrowPhase
 {
 public:

@@ -23,8 +23,9 @@ struct ModelSlot;
 /// Second stage of a frame: gathers the pairs' requests to their models, merges records that no
 /// request needs, and shares the frame's splits among waiting requests (SplitShares). Merges and
 /// splits ahead of the tools may wait and have a steady pace (WorkPace). Haptic thread. Cost: about
-/// 10,000 instructions a split with its search, refit and later merge (benchmarks/callgrind.json),
-/// and linear in the nodes and triangles near each request that has no certificate.
+/// 10,000 instructions a split with its search, refit and later merge
+/// (docs/benchmarks/callgrind.json), and linear in the nodes and triangles near each request that
+/// has no certificate.
 class Refinement
 {
 public:

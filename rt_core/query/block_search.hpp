@@ -63,7 +63,7 @@ struct Findings
     return lower_m <= found.open_m && lower_m <= found.pruned_m && lower_m < kInfinity;
 }
 
-/// Factor that makes a length less by its last bit: inexact faces may begin at the length itself.
+/// Factor that makes a length less by its last bits: inexact faces may begin at the length itself.
 inline constexpr double kJustBelow = 1.0 - 0x1p-52;
 
 /// Answer within `reach_m`, without the nearest face and points, which the caller fills in.

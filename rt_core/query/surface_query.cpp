@@ -62,7 +62,7 @@ public:
         if (tree_.is_block_in_use(memory.block))
         {
             known_.before = memory.block;
-            look_at_alone(memory.block, batch);
+            test_alone(memory.block, batch);
         }
         if (known_.before == kNoNode || limit_ > kPoorLimit * memory.limit)
         {
@@ -70,7 +70,7 @@ public:
             if (nearest != kNoNode && nearest != known_.before)
             {
                 known_.nearest = nearest;
-                look_at_alone(nearest, batch);
+                test_alone(nearest, batch);
             }
         }
         walk(batch);
@@ -239,7 +239,7 @@ private:
                                    probe_, node.mask, node.coarse, bound(), frontier, batch);
     }
 
-    void look_at_alone(std::uint32_t index, BlockBatch& batch) noexcept
+    void test_alone(std::uint32_t index, BlockBatch& batch) noexcept
     {
         if (!budget_.take_node())
         {

@@ -63,6 +63,14 @@ protected:
 
 } // namespace
 
+TEST_F(EditedSurfaceTest, without_room_refuses_every_edit)
+{
+    EditedSurface none(arena_, rig_->model().header, 0);
+    EXPECT_FALSE(none.can_be_edited());
+    EXPECT_FALSE(none.is_added(id_of(0)));
+    EXPECT_EQ(none.take({ModelId{0}, 1, {}, {}, {}}), EditRefusal::unknown_model);
+}
+
 TEST_F(EditedSurfaceTest, fills_and_empties_its_room)
 {
     std::vector<AddedFace> all;

@@ -98,6 +98,32 @@ TEST_P(ForestProperties, splits_and_merges_undone_in_any_legal_order_return_the_
     EXPECT_EQ(sut.forest().state_hash(), base_hash);
 }
 
+TEST_P(ForestProperties, the_same_cut_has_the_same_hash_however_it_was_reached)
+{
+    LoadedForest one(model_);
+    LoadedForest other(model_);
+    std::vector<RecordId> targets;
+    for (int i = 0; i < 200; ++i)
+    {
+        targets.push_back({static_cast<std::uint32_t>(random_.below(one.counts().records))});
+    }
+    const auto split_all = [](LoadedForest& sut, const std::vector<RecordId>& records)
+    {
+        for (const RecordId record : records)
+        {
+            if (!sut.pages().is_refined(record))
+            {
+                sut.split_with_dependencies(record);
+            }
+        }
+    };
+    split_all(one, targets);
+    std::reverse(targets.begin(), targets.end());
+    split_all(other, targets);
+    EXPECT_EQ(one.forest().state_hash(), other.forest().state_hash())
+        << model_.name << " seed " << seed_;
+}
+
 INSTANTIATE_TEST_SUITE_P(small_models, ForestProperties, testing::Range<std::size_t>(0, 6));
 
 /// I4: a certified sphere equals the full mesh.

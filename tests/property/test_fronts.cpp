@@ -43,10 +43,13 @@ protected:
 TEST_P(Fronts, have_pages_to_spare_when_the_cache_is_on)
 {
     FrameRig sut(model_, {});
+    std::uint32_t refined_max = 0;
     for (int frame = 0; frame < 180; ++frame)
     {
         static_cast<void>(sut.step(next_goal(frame)));
+        refined_max = std::max(refined_max, sut.model().forest.refined_records());
     }
+    EXPECT_GT(refined_max, 20U);
     if (GetParam() == 0) // Other caches may be so small that all their pages are in use.
     {
         EXPECT_GT(idle_pages(sut.model()), 0U) << "a cache keeps what it does not need now";

@@ -70,7 +70,7 @@ private:
     {
         if (!tree_.root().is_none())
         {
-            walk(tree_.root());
+            check(walk(tree_.root()).box == tree_.box(), "the root has another box");
         }
         check_unplaced();
     }

@@ -10,11 +10,17 @@ report cannot be read.
 """
 
 import json
+import math
 import operator
 import sys
 
 COMPARISONS = {"==": operator.eq, "<": operator.lt, "<=": operator.le, ">": operator.gt,
                ">=": operator.ge}
+
+
+def refuse(constant):
+    """For NaN and Infinity, which JSON does not have."""
+    raise ValueError(f"{constant} is no number")
 
 
 def value_of(report, key):
@@ -26,7 +32,10 @@ def value_of(report, key):
             raise LookupError(f"there is no {key}") from None
     if isinstance(value, str):
         raise LookupError(f"{key} is a text")
-    return float(len(value or ()) if value is None or isinstance(value, (list, dict)) else value)
+    number = float(len(value or ()) if value is None or isinstance(value, (list, dict)) else value)
+    if not math.isfinite(number):
+        raise LookupError(f"{key} is {number}")
+    return number
 
 
 def fault_of(report, left, comparison, right):
@@ -37,7 +46,7 @@ def fault_of(report, left, comparison, right):
         wanted = float(number) * (value_of(report, key) if star else 1.0)
         if not COMPARISONS[comparison](value, wanted):
             return f"{left} is {value:g}; expected {comparison} {right}"
-    except (LookupError, ValueError) as error:
+    except (LookupError, OverflowError, ValueError) as error:
         return f"{left} {comparison} {right}: {error}"
     return None
 
@@ -48,7 +57,7 @@ def main(words):
         return 2
     try:
         with open(words[0], encoding="utf-8") as file:
-            report = json.load(file)
+            report = json.load(file, parse_constant=refuse)
     except (OSError, ValueError):
         print(f"{words[0]} can't be read as JSON")
         return 2

@@ -13,7 +13,9 @@
 #include <iterator>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
+#include <utility>
 
 namespace tactus
 {
@@ -146,6 +148,41 @@ TEST(WriteSpm, refuses_a_folder_that_is_not_there)
         write_spm(folder.path() / "none" / "a.spm", model.prepared, model.simplification, {});
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().text.find("a.spm"), std::string::npos);
+}
+
+/// True if directed edges are unique, so that no two faces are on the same side of an edge.
+bool is_manifold(const TriangleMesh& mesh)
+{
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const auto& face : mesh.faces)
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            if (!edges.emplace(face[i], face[(i + 1) % 3]).second)
+            {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+TEST(Replay, every_cut_of_the_coarsest_first_order_is_manifold)
+{
+    for (const auto& model : sample_models())
+    {
+        Replay sut(*model->decoded);
+        EXPECT_TRUE(is_manifold(sut.mesh())) << model->name;
+        std::size_t splits = 0;
+        for (const RecordId id : coarsest_first(*model->decoded))
+        {
+            ASSERT_FALSE(sut.split(id)) << model->name;
+            if (++splits % 97 == 0)
+            {
+                EXPECT_TRUE(is_manifold(sut.mesh())) << model->name << " after " << splits;
+            }
+        }
+    }
 }
 
 TEST(Replay, any_order_that_respects_dependencies_gives_the_same_mesh)

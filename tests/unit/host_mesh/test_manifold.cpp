@@ -260,6 +260,7 @@ RC_GTEST_PROP(Manifold, does_not_touch_manifold_meshes, ())
     const auto sut = detail::split_into_manifold(split, segments + 2);
     RC_ASSERT(split == faces);
     RC_ASSERT(sut.cut_edges == 0U);
+    RC_ASSERT(sut.copy_of.empty());
 }
 
 } // namespace

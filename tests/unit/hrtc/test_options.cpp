@@ -73,7 +73,7 @@ TEST_F(HrtcOptions, are_refused_in_one_line)
 {
     folder_.write("ball.spm", "");
     std::filesystem::create_directory("folder");
-    EXPECT_GE(expect_refusals(parse, TACTUS_WRONG_USAGES), 285U);
+    EXPECT_GE(expect_refusals(parse, TACTUS_WRONG_USAGES), 417U);
     EXPECT_EQ(folder_.files(), 2U) << "nothing is left behind";
     std::string faults;
     for (int i = 0; i < 65; ++i)

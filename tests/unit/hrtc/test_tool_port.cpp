@@ -391,6 +391,7 @@ TEST(VirtualFixture, stays_as_it_was_while_the_device_says_no_place)
 
 TEST(VirtualFixture, takes_a_direction_of_any_length)
 {
+    EXPECT_FALSE(parse_fixture("none")); // The option's own word, not a fixture.
     const auto thin = parse_fixture("line:0,0,0,1e-300,0,0");
     ASSERT_TRUE(thin);
     EXPECT_LT((thin.value().direction - Vec3(1.0, 0.0, 0.0)).norm(), 1e-15);

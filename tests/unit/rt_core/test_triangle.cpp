@@ -63,8 +63,9 @@ TrianglePair on_the_grid(Random& random)
 Pose some_pose(const TrianglePair& pair, Random& random)
 {
     const Triangle& triangle = pair.second;
-    const double size =
+    const double longest =
         std::max((triangle[1] - triangle[0]).norm(), (triangle[2] - triangle[0]).norm());
+    const double size = longest > 0.0 ? longest : 1.0; // For three equal corners.
     return {triangle, random.one_in(4) ? pair.first[0] : query_near(random, triangle, size)};
 }
 
