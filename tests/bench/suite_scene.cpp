@@ -63,7 +63,7 @@ struct ForceSteps
 ForceSteps force_steps(const Scene& scene, const BlendCase& test_case, bool blends,
                        std::uint32_t frames)
 {
-    constexpr double kDepth_m = 0.006;
+    constexpr double kHeldDepth_m = 0.006;
     constexpr double kRadius_m = 0.002;
     test::RigOptions options;
     options.static_when_it_fits = true;
@@ -74,7 +74,7 @@ ForceSteps force_steps(const Scene& scene, const BlendCase& test_case, bool blen
     const double top_m = above.z() - scene.tree->nearest(above).distance_m;
     Vec3 goal(middle.x() + 1e-4, middle.y() + 2e-4, top_m + 2.0 * kRadius_m);
     rig.settle(goal, {}, 3'000);
-    for (; goal.z() > top_m + kRadius_m - kDepth_m; goal.z() -= 1e-4)
+    for (; goal.z() > top_m + kRadius_m - kHeldDepth_m; goal.z() -= 1e-4)
     {
         rig.step(goal);
     }
