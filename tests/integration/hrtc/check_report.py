@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -S
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
 """check_report.py REPORT [LEFT OP RIGHT]...: compares figures of a JSON report.

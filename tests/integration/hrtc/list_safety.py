@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3 -S
 # SPDX-License-Identifier: Apache-2.0
 # Copyright the Tactus authors.
 """list_safety.py REPORT: prints the events of tool 0 in a report's `safety`, one a line: TIME_S
