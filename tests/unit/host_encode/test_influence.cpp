@@ -64,7 +64,8 @@ std::set<std::uint32_t> find_needed(const DecodedModel& model,
     {
         for (const SplitFace& face : split_faces[id])
         {
-            if (test::DistanceOracle::distance(centre_m, face.corners) - face.error_m <= radius_m)
+            if (test::DistanceOracle::distance(centre_m, face.corners) <=
+                static_cast<long double>(face.error_m) + static_cast<long double>(radius_m))
             {
                 stack.push_back(id);
             }
