@@ -171,6 +171,17 @@ void check(const ConvexContact& contact, bool expected)
     ASSERT_TRUE(!expected || contact.nearest.upper <= 2.0 * contact.nearest.rounding);
 }
 
+/// Checks the contact of a hull of grid points with a triangle.
+ConvexContact check_hull(const Grid& grid, std::span<const GridPoint> corners,
+                         const GridTriangle& triangle, bool expected)
+{
+    const std::vector<Vec3> vertices = placed(grid, corners);
+    const Hull hull = hull_of(vertices);
+    const ConvexContact contact = ask_contact(hull.body(), grid.placed(triangle));
+    check(contact, expected);
+    return contact;
+}
+
 } // namespace
 
 /// Points, segments, polygons and bodies of up to six corners, many of them touching.
@@ -190,14 +201,8 @@ TEST(ConvexContact, of_small_hulls_is_what_exact_linear_algebra_says)
         const GridTriangle triangle = grid.triangle();
         const bool expected = share_a_point(corners, triangle);
         tally.add(expected);
-        const std::vector<Vec3> vertices = placed(grid, corners);
-        const Hull hull = hull_of(vertices);
-
-        const ConvexContact contact = ask_contact(hull.body(), grid.placed(triangle));
-
-        check(contact, expected);
+        overruled.add(check_hull(grid, corners, triangle, expected));
         ASSERT_FALSE(HasFatalFailure()) << "case " << i;
-        overruled.add(contact);
     }
     tally.expect_both();
     overruled.print("small hulls on grids");
@@ -225,14 +230,8 @@ TEST(ConvexContact, of_solid_hulls_is_what_all_separating_axes_say)
         }
         const bool expected = !IntegerAxes(corners, triangle).have_plane_between();
         tally.add(expected);
-        const std::vector<Vec3> vertices = placed(grid, corners);
-        const Hull hull = hull_of(vertices);
-
-        const ConvexContact contact = ask_contact(hull.body(), grid.placed(triangle));
-
-        check(contact, expected);
+        overruled.add(check_hull(grid, corners, triangle, expected));
         ASSERT_FALSE(HasFatalFailure()) << "case " << i;
-        overruled.add(contact);
     }
     tally.expect_both();
     overruled.print("solid hulls on grids");
